@@ -1,4 +1,4 @@
-// Named choices between speed and accuracy: points on the front of `aurasim-lab experiment pareto` (docs/accuracy.md
+// Named choices between speed and accuracy: points on the front of `aurasim-lab run accuracy` (docs/accuracy.md
 // says how they were chosen).
 #pragma once
 

@@ -3,20 +3,12 @@
 #include <memory>
 
 #include "core/make_aura.h"
+#include "lab/pair.h"
 
 namespace aurasim::lab {
 namespace {
 
 constexpr double kUnitRadius_m = 1;
-
-class Spheres final : public core::ClearanceQuery {
- public:
-  double bounding_radius(core::PrototypeId) const override { return kUnitRadius_m; }
-  double clearance(core::PrototypeId, const core::Pose& a, core::PrototypeId, const core::Pose& b,
-                   double) const override {
-    return (a.p_WB - b.p_WB).norm() - 2 * kUnitRadius_m;
-  }
-};
 
 core::Path flying(double x_m, double v_m_s, double age_steps) {
   core::Path path;
@@ -32,7 +24,7 @@ core::Path flying(double x_m, double v_m_s, double age_steps) {
 
 double head_on_reach_m(AuraChoice choice, const Conditions& conditions) {
   const core::AuraRules rules = rules_for(choice, conditions);
-  const Spheres spheres;
+  const RoundShapes spheres(kUnitRadius_m);
   const std::unique_ptr<const core::Aura> aura = core::make_aura(rules, spheres);
   const double v = rules.top_speed_m_s;
   double near_m = 0, far_m = 1000;

@@ -13,9 +13,6 @@
 namespace aurasim::lab {
 namespace {
 
-constexpr std::array kAuras = {AuraChoice::kNone, AuraChoice::kThesis, AuraChoice::kTight,
-                               AuraChoice::kTightAtThesisSize, AuraChoice::kSwept};
-
 /// From `first` to `last` in `increment`s; the last value is `last` also where the increments miss it.
 std::vector<double> steps_of(double first, double last, double increment) {
   std::vector<double> values;
@@ -125,19 +122,8 @@ double aura_reach_m(AuraChoice choice, const Conditions& conditions) {
 }
 
 std::string_view name_of(AuraChoice aura) {
-  switch (aura) {
-    case AuraChoice::kNone:
-      return "none";
-    case AuraChoice::kThesis:
-      return "thesis";
-    case AuraChoice::kTight:
-      return "tight";
-    case AuraChoice::kTightAtThesisSize:
-      return "tight_at_thesis_size";
-    case AuraChoice::kSwept:
-      break;
-  }
-  return "swept";
+  constexpr std::array<std::string_view, 5> names = {"none", "thesis", "tight", "tight_at_thesis_size", "swept"};
+  return names[static_cast<std::size_t>(aura)];
 }
 
 std::string_view name_of(Factor factor) {
@@ -162,13 +148,6 @@ double shown(Factor factor, double value) {
       break;
   }
   return std::round(value * 1e6) / 1e4;
-}
-
-std::optional<AuraChoice> aura_named(std::string_view name) {
-  for (const AuraChoice aura : kAuras) {
-    if (name_of(aura) == name) return aura;
-  }
-  return std::nullopt;
 }
 
 }  // namespace aurasim::lab

@@ -77,6 +77,4 @@ std::string name_of(const Series& series);
 /// A value as the files and figures show it: m/s, ms, ms, percent.
 double shown(Factor factor, double value);
 
-std::optional<AuraChoice> aura_named(std::string_view name);
-
 }  // namespace aurasim::lab

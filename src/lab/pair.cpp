@@ -83,15 +83,6 @@ std::uint32_t shape_of(PairKind kind, Chance& chance) {
   return kind == PairKind::kRandom ? chance.below(3) : kSphere;
 }
 
-class RoundShapes final : public core::ClearanceQuery {
- public:
-  double bounding_radius(core::PrototypeId) const override { return kRadius_m; }
-  double clearance(core::PrototypeId, const core::Pose& a, core::PrototypeId, const core::Pose& b,
-                   double) const override {
-    return (a.p_WB - b.p_WB).norm() - 2 * kRadius_m;
-  }
-};
-
 /// Speed with which a body may leave its path according to its aura, m/s.
 double stated_m_s(double speed_m_s, double uncertainty) {
   constexpr double kCalm_m_s = 0.1;
@@ -102,7 +93,7 @@ double stated_m_s(double speed_m_s, double uncertainty) {
 /// look four times as far ahead (core::assign_hosts), and from which on the nodes have 12 K steps to talk.
 double notice_s(PairKind kind, const Conditions& conditions, double v_a, double v_b, double closing_m_s) {
   const int hops = kind == PairKind::kCorner ? core::horizon::kMostHops : 1;
-  const RoundShapes shapes;
+  const RoundShapes shapes(kRadius_m);
   double far_m = 0;
   double swept_s = 0;
   for (const AuraChoice choice :
@@ -158,13 +149,6 @@ core::Quat Chance::rotation() {
 }
 
 std::string_view name_of(PairKind kind) { return kNames[static_cast<std::size_t>(kind)]; }
-
-std::optional<PairKind> pair_named(std::string_view name) {
-  for (const PairKind kind : kPairKinds) {
-    if (name_of(kind) == name) return kind;
-  }
-  return std::nullopt;
-}
 
 Pair make_pair(PairKind kind, const Conditions& conditions, Chance& chance) {
   Pair pair;

@@ -3,10 +3,10 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <random>
 #include <string_view>
 
+#include "core/clearance.h"
 #include "core/region_map.h"
 #include "core/scene.h"
 #include "lab/conditions.h"
@@ -25,7 +25,6 @@ inline constexpr std::array kPairKinds = {PairKind::kHeadOn, PairKind::kCorner, 
                                           PairKind::kBoxes,  PairKind::kCapsules, PairKind::kRandom};
 
 std::string_view name_of(PairKind kind);
-std::optional<PairKind> pair_named(std::string_view name);
 
 /// Uniform random numbers. The sequence depends on the seed only, not on the machine.
 class Chance {
@@ -53,6 +52,20 @@ struct Pair {
 /// centres pass each other; with this radius a head-on pair at 96 m/s each overlaps more and more for two steps, so
 /// that up to there every late contact looks late, and one world alone misses none.
 inline constexpr double kRadius_m = 3.5;
+
+/// Bodies as spheres of one radius.
+class RoundShapes final : public core::ClearanceQuery {
+ public:
+  explicit RoundShapes(double radius_m) : radius_m_(radius_m) {}
+  double bounding_radius(core::PrototypeId) const override { return radius_m_; }
+  double clearance(core::PrototypeId, const core::Pose& a, core::PrototypeId, const core::Pose& b,
+                   double) const override {
+    return (a.p_WB - b.p_WB).norm() - 2 * radius_m_;
+  }
+
+ private:
+  double radius_m_;
+};
 
 /// Makes a pair; its bodies have ids 0 and 1. They start so far apart that, at these tolerances, the nodes exchange
 /// messages before any kind of aura predicts the meeting.

@@ -62,11 +62,5 @@ TEST(AuraRadius, HeadOnReachOfASphereAuraIsItsRadiusAndMargin) {
   EXPECT_GT(head_on_reach_m(AuraChoice::kSwept, c), 0.5);
 }
 
-TEST(Variants, AreFoundByName) {
-  EXPECT_EQ(aura_named("swept"), AuraChoice::kSwept);
-  EXPECT_EQ(core::sync_named("free_running"), core::SyncMode::kFreeRunning);
-  EXPECT_FALSE(aura_named("huge"));
-}
-
 }  // namespace
 }  // namespace aurasim::lab

@@ -31,12 +31,8 @@ lab::StepLoad load_of(const records::StepRow& row) {
   load.physics_ms = row.physics_ms;
   load.protocol_ms = row.protocol_ms;
   load.transport_ms = row.transport_ms;
-  load.cut_ms = row.cut_ms;
-  load.hash_ms = row.hash_ms;
-  load.watch_ms = std::max(0.0, row.frame_ms - load.frame_ms());
+  load.other_ms = std::max(0.0, row.frame_ms - load.frame_ms());
   load.bodies = row.bodies;
-  load.awake = row.awake;
-  load.foreign = row.foreign_auras;
   load.projecting = row.projecting;
   load.largest_cluster = row.largest_cluster;
   load.departures = row.hand_offs_out;
@@ -47,7 +43,7 @@ lab::StepLoad load_of(const records::StepRow& row) {
 }  // namespace
 
 std::vector<lab::Window> windows_of_report(const std::filesystem::path& report, std::size_t regions, double step_s) {
-  lab::WindowSums sums(regions, std::llround(lab::kWindow_s / step_s), step_s);
+  lab::WindowSums sums(regions, std::llround(lab::kWindow_s / step_s));
   std::vector<std::uint64_t> violations(regions, 0);
   records::read_csv<records::StepRow>(report / "steps.csv", [&](const records::StepRow& row) {
     if (row.step == 0) return;

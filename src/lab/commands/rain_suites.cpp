@@ -37,26 +37,25 @@ struct Figure {
 double bodies_in_real_time(const std::vector<Window>& windows) {
   double bodies = 0;
   for (const Window& w : windows) {
-    if (w.region >= 0) continue;
     if (w.frame_mean_ms > kStep_ms) break;
-    bodies = static_cast<double>(w.mean.bodies);
+    bodies = static_cast<double>(w.bodies);
   }
   return bodies;
 }
 
 std::vector<Figure> figures(const RainFigures& f) {
   const auto count = [](auto n) { return static_cast<double>(n); };
-  return {{"bodies", "1", count(f.bodies)},
+  return {{"bodies", "1", count(f.last.bodies)},
           {"largest frame", "ms", f.frame_max_ms},
           {"95th percentile", "ms", f.frame_p95_ms},
-          {"last 5 s", "ms", f.last_frame_ms},
-          {"physics, all nodes", "ms", f.physics_ms},
-          {"protocol", "ms", f.protocol_ms},
-          {"transport", "ms", f.transport_ms},
+          {"last 5 s", "ms", f.last.frame_mean_ms},
+          {"physics, all nodes", "ms", f.last.physics_ms},
+          {"protocol", "ms", f.last.protocol_ms},
+          {"transport", "ms", f.last.transport_ms},
           {"(protocol + transport) / physics", "ratio", f.overhead_share},
-          {"projecting bodies", "1", count(f.projecting)},
-          {"handed over", "1", count(f.hand_offs)},
-          {"back within a second", "%", 100 * count(f.returns) / std::max(1.0, count(f.hand_offs))},
+          {"projecting bodies", "1", count(f.last.projecting)},
+          {"handed over", "1", count(f.departures)},
+          {"back within a second", "%", 100 * count(f.returns) / std::max(1.0, count(f.departures))},
           {"largest cluster", "1", count(f.largest_cluster)},
           {"most hosted over mean", "1", f.most_hosted_share},
           {"violations", "1", count(f.violations)}};
@@ -68,8 +67,8 @@ std::vector<Figure> traffic(const Rain& rain, const RainFigures& f) {
   return {{"bytes per node and step", "B", per(f.link_bytes, node_steps)},
           {"datagrams per node and step", "1", per(f.datagrams, node_steps)},
           {"bytes per aura message", "B", per(f.aura_bytes, static_cast<double>(f.aura_updates))},
-          {"bytes per body handed over", "B", per(f.hand_off_bytes, static_cast<double>(f.hand_offs))},
-          {"time taken over simulated", "1", f.slow_down}};
+          {"bytes per body handed over", "B", per(f.hand_off_bytes, static_cast<double>(f.departures))},
+          {"time taken over simulated", "1", f.last.slow_down}};
 }
 
 /// The case of a run, without its repeat. '/' divides the parts of a case, so units are in words.
@@ -125,7 +124,7 @@ struct Runs {
 std::vector<Figure> gains(const RainFigures& one, const RainFigures& f) {
   return {{"largest frame, times less", "ratio", one.frame_max_ms / f.frame_max_ms},
           {"95th percentile, times less", "ratio", one.frame_p95_ms / f.frame_p95_ms},
-          {"last 5 s, times less", "ratio", one.last_frame_ms / f.last_frame_ms},
+          {"last 5 s, times less", "ratio", one.last.frame_mean_ms / f.last.frame_mean_ms},
           {"growth per body, times less", "ratio", one.growth_per_body / f.growth_per_body}};
 }
 

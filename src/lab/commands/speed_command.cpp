@@ -13,7 +13,6 @@
 #include "lab/speed/speed.h"
 #include "lab/suites/results_file.h"
 #include "lab/suites/speed_rows.h"
-#include "physics/solver_names.h"
 
 namespace aurasim::lab::commands {
 namespace {
@@ -39,14 +38,11 @@ void add_speed(CLI::App& experiments, command_line::Action& action) {
   const auto quick = std::make_shared<bool>(false);
   std::vector<std::string> settings;
   for (const lab::SpeedSettings& known : lab::speed_settings()) settings.push_back(known.name);
-  std::vector<std::string> solvers;
-  for (const auto& [solver, name] : physics::kSolverNames) solvers.emplace_back(name);
   command->add_option("--out", *out, "folder for the results; runs.csv goes on where there is one")->required();
   command->add_option("--cases", plan->scenes, "only these")
       ->delimiter(',')
       ->check(CLI::IsMember(lab::speed_scene_names()));
   command->add_option("--settings", plan->settings, "of the step")->delimiter(',')->check(CLI::IsMember(settings));
-  command->add_option("--solver", plan->solver, "instead of that of the settings")->check(CLI::IsMember(solvers));
   command->add_option("--threads", plan->threads, "of the soft step; with several, times are by the clock")
       ->check(CLI::Range(1, 64));
   command->add_option("--repeats", plan->repeats, "runs of each, by turns; 0 writes the scenes only")

@@ -13,14 +13,14 @@ constexpr double kFrame_s = 0.001;
 constexpr double kLatency_s = 0.0005;
 
 /// What a node has counted since the start.
-struct Counts {
+struct Counted {
   std::uint64_t auras = 0;
   std::uint64_t violations = 0;
   std::uint64_t late = 0;
   Traffic traffic;
 };
 
-Counts counts_of(const VirtualCluster& cluster, std::size_t region) {
+Counted counts_of(const VirtualCluster& cluster, std::size_t region) {
   const node::Node& node = cluster.node(region);
   const core::ProjectionCounters& auras = node.protocol().projection().counters();
   return {auras.created + auras.updated + auras.deleted, node.protocol().violations().total(),
@@ -28,18 +28,14 @@ Counts counts_of(const VirtualCluster& cluster, std::size_t region) {
           cluster.post().traffic(core::RegionId{static_cast<std::uint32_t>(region)})};
 }
 
-StepLoad load_of(const node::StepReport& report, const Counts& before, const Counts& now, RoundTrips& trips) {
+StepLoad load_of(const node::StepReport& report, const Counted& before, const Counted& now, RoundTrips& trips) {
   StepLoad load;
   load.physics_ms = kMs * report.durations.physics_s;
   load.protocol_ms = kMs * report.durations.protocol_s;
   load.transport_ms = kMs * report.durations.transport_s;
-  load.watch_ms = kMs * report.durations.watch_s;
-  load.cut_ms = kMs * report.durations.cut_s;
-  load.hash_ms = kMs * report.durations.hash_s;
+  load.other_ms = kMs * (report.durations.watch_s + report.durations.cut_s + report.durations.hash_s);
   load.bodies = report.bodies;
-  load.awake = report.awake;
   load.projecting = report.projecting;
-  load.foreign = report.foreign_auras;
   load.largest_cluster = report.largest_cluster;
   for (const node::HandOffRow& row : report.departures) {
     ++load.departures;
@@ -72,13 +68,13 @@ std::optional<std::vector<Window>> run_rain(const Rain& rain, const RainPlace& p
   const double step_s = launch.step_s();
   const core::Step steps = rain.steps(step_s);
   VirtualCluster cluster(launch.scene, launch.regions, rules_of(rain, launch, place));
-  WindowSums sums(cluster.size(), std::llround(kWindow_s / step_s), step_s);
-  std::vector<Counts> counts(cluster.size());
+  WindowSums sums(cluster.size(), std::llround(kWindow_s / step_s));
+  std::vector<Counted> counts(cluster.size());
   RoundTrips trips(std::llround(1 / step_s));
   for (core::Step shown = 0; cluster.slowest() < steps;) {
     const VirtualCluster::Event event = cluster.next();
     const std::size_t region = core::value_of(event.region);
-    const Counts now = counts_of(cluster, region);
+    const Counted now = counts_of(cluster, region);
     sums.add(region, event.report->step, load_of(*event.report, counts[region], now, trips));
     counts[region] = now;
     if (cluster.slowest() < shown + 20) continue;

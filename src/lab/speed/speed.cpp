@@ -41,14 +41,9 @@ SpeedSettings settings_of(const std::string& name, int substeps, int iterations,
   return {name, physics};
 }
 
-SpeedSettings settings_named(const std::string& name, const std::string& solver) {
+SpeedSettings settings_named(const std::string& name) {
   for (const SpeedSettings& settings : speed_settings()) {
-    if (settings.name != name) continue;
-    SpeedSettings chosen = settings;
-    if (solver.empty()) return chosen;
-    chosen.physics.solver = physics::solver_named(solver);
-    chosen.name += "-" + solver;
-    return chosen;
+    if (settings.name == name) return settings;
   }
   throw std::invalid_argument("there are no settings \"" + name + "\"");
 }
@@ -139,7 +134,7 @@ std::vector<SpeedRun> run_speed(const SpeedPlan& plan, const std::filesystem::pa
     for (const SpeedScene& scene : scenes) {
       for (const std::string& name : plan.settings) {
         if (!progress(static_cast<double>(runs.size()) / whole)) return runs;
-        SpeedSettings settings = settings_named(name, plan.solver);
+        SpeedSettings settings = settings_named(name);
         settings.physics.threads = plan.threads;
         runs.push_back(run_into(directory, scene, settings));
       }

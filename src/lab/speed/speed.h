@@ -31,7 +31,6 @@ const std::vector<SpeedSettings>& speed_settings();
 struct SpeedPlan {
   std::vector<std::string> scenes;                   ///< none: every scene
   std::vector<std::string> settings = {"balanced"};  ///< names of speed_settings()
-  std::string solver;                                ///< solver that replaces that of the settings; or empty
   int threads = 1;
   SceneSize size = SceneSize::kWhole;
   int repeats = 1;  ///< 0: only the scenes are written

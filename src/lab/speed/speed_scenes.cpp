@@ -1,13 +1,14 @@
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <stdexcept>
 #include <utility>
 
 #include "config/launch.h"
 #include "config/shipped_files.h"
 #include "lab/case.h"
+#include "lab/pair.h"
 #include "lab/speed/speed_scene.h"
+#include "lab/stability/scene_builder.h"
 
 namespace aurasim::lab {
 namespace {
@@ -21,72 +22,32 @@ core::Scene shipped_scene(const char* name) {
   return config::read_scene(config::shipped_folder() / "launch_configs" / "scenes" / name);
 }
 
-/// Uniform, the same with every standard library.
-class Dice {
- public:
-  double between(double low, double high) {
-    return low + (high - low) * static_cast<double>(random_() >> 11) * 0x1p-53;
-  }
-  Vec3 in_cube(double half_m) {
-    const double x = between(-half_m, half_m), y = between(-half_m, half_m);
-    return {x, y, between(-half_m, half_m)};
-  }
-  /// Shoemake, Uniform Random Rotations (1992).
-  Quat rotation() {
-    const double u = between(0, 1), a = between(0, 2 * M_PI), b = between(0, 2 * M_PI);
-    return {std::sqrt(u) * std::cos(b), std::sqrt(1 - u) * std::sin(a), std::sqrt(1 - u) * std::cos(a),
-            std::sqrt(u) * std::sin(b)};
-  }
+Vec3 in_cube(Chance& chance, double half_m) {
+  const double x = chance.between(-half_m, half_m), y = chance.between(-half_m, half_m);
+  return {x, y, chance.between(-half_m, half_m)};
+}
 
- private:
-  std::mt19937_64 random_{kSeed};
-};
+/// Shoemake, Uniform Random Rotations (1992).
+Quat shoemake_rotation(Chance& chance) {
+  const double u = chance.between(0, 1), a = chance.between(0, 2 * M_PI), b = chance.between(0, 2 * M_PI);
+  return {std::sqrt(u) * std::cos(b), std::sqrt(1 - u) * std::sin(a), std::sqrt(1 - u) * std::cos(a),
+          std::sqrt(u) * std::sin(b)};
+}
 
-/// Builds scenes in which all bodies have one material.
-class Stage {
- public:
-  Stage(const std::string& name, core::Step steps, double friction_of_pair, double restitution = 0) {
-    all_.name = all_.scene.name = name;
-    all_.steps = steps;
-    all_.states_every = steps / 4;
-    core::Material material;
-    material.name = "all";
-    material.friction = std::sqrt(friction_of_pair);
-    material.restitution = restitution;
-    all_.scene.materials = {material};
-  }
+SpeedScene speed_scene_of(const std::string& name, core::Step steps, const core::Scene& scene) {
+  SpeedScene all;
+  all.name = name;
+  all.steps = steps;
+  all.states_every = steps / 4;
+  all.scene = scene;
+  return all;
+}
 
-  core::PrototypeId kind(const core::Shape& shape, double mass_kg) {
-    core::Prototype prototype;
-    prototype.shape = add_shape(shape);
-    prototype.mass_kg = mass_kg;
-    prototype.can_sleep = false;
-    all_.scene.prototypes.push_back(prototype);
-    return core::PrototypeId{static_cast<std::uint32_t>(all_.scene.prototypes.size() - 1)};
-  }
-
-  void fixed(const core::Shape& shape, const Vec3& p_W = Vec3::Zero()) {
-    core::StaticBody body;
-    body.shape = add_shape(shape);
-    body.pose.p_WB = p_W;
-    all_.scene.statics.push_back(body);
-  }
-
-  void body(core::PrototypeId kind, const core::Pose& pose, const Vec3& v_W = Vec3::Zero()) {
-    all_.scene.bodies.push_back({core::BodyId{all_.scene.bodies.size()}, kind, pose, v_W, Vec3::Zero()});
-    all_.births.push_back(0);
-  }
-
-  SpeedScene& all() { return all_; }
-
- private:
-  std::uint32_t add_shape(const core::Shape& shape) {
-    all_.scene.shapes.push_back({"shape " + std::to_string(all_.scene.shapes.size()), shape});
-    return static_cast<std::uint32_t>(all_.scene.shapes.size() - 1);
-  }
-
-  SpeedScene all_;
-};
+/// All bodies are there from state 0 on.
+SpeedScene born_at_once(SpeedScene all) {
+  all.births.assign(all.scene.bodies.size(), 0);
+  return all;
+}
 
 std::vector<core::BodyRecord> injected_before(const core::Scene& scene, core::Step step, double step_s) {
   std::vector<core::BodyRecord> bodies;
@@ -103,11 +64,7 @@ std::vector<core::BodyRecord> injected_before(const core::Scene& scene, core::St
 
 /// The thesis rain, 60 s of it; the last 12 of its 9,600 bodies would come after them. They may sleep.
 SpeedScene rain(bool quick) {
-  SpeedScene all;
-  all.name = "rain";
-  all.steps = quick ? 240 : 3600;
-  all.states_every = all.steps / 4;
-  all.scene = shipped_scene("columns_rain.yaml");
+  SpeedScene all = speed_scene_of("rain", quick ? 240 : 3600, shipped_scene("columns_rain.yaml"));
   for (const core::BodyRecord& body : injected_before(all.scene, all.steps, 1.0 / all.step_hz)) {
     all.births.push_back(body.birth);
     all.scene.bodies.push_back(
@@ -120,31 +77,32 @@ SpeedScene rain(bool quick) {
 /// Cubes of 1 m side by side, each row on the one below.
 SpeedScene boxes_in_rows(bool quick) {
   const int rows = quick ? 10 : 100;
-  Stage stage("pyramid", quick ? 120 : 300, 0.6);
-  stage.fixed(core::Plane{});
+  SceneBuilder stage("pyramid");
+  stage.material(0.6).ground();
   const core::PrototypeId cube = stage.kind(core::Box{}, 1);
   for (int row = 0; row < rows; ++row) {
     for (int i = 0; i < rows - row; ++i) stage.body(cube, {{i - 0.5 * (rows - row - 1), 0, row + 0.5}});
   }
-  return stage.all();
+  return born_at_once(speed_scene_of("pyramid", quick ? 120 : 300, stage.scene()));
 }
 
 /// Piles of four cubes that come to rest: of the last 5 s every engine should spend next to nothing.
 SpeedScene sleepers(bool quick) {
   const int across = quick ? 5 : 50, high = 4;
-  Stage stage("sleepers", quick ? 240 : 720, 0.6);
-  stage.fixed(core::Plane{});
+  SceneBuilder stage("sleepers");
+  stage.material(0.6).ground();
   const core::PrototypeId cube = stage.kind(core::Box{}, 1);
-  stage.all().scene.prototypes.front().can_sleep = true;
   for (int i = 0; i < across * across * high; ++i) {
     stage.body(cube, {{1.5 * (i % across), 1.5 * (i / across % across), i / (across * across) + 0.5}});
   }
-  return stage.all();
+  SpeedScene all = speed_scene_of("sleepers", quick ? 240 : 720, stage.scene());
+  all.scene.prototypes.front().can_sleep = true;
+  return born_at_once(std::move(all));
 }
 
 /// Three points of one octant in all eight: the centre of mass is the origin, and the principal axes are those of the
 /// body, for every engine.
-core::ConvexHull symmetric_hull(Dice& dice) {
+core::ConvexHull symmetric_hull(Chance& dice) {
   core::ConvexHull hull;
   const double longest[] = {0.2, 0.3, 0.4};
   for (int corner = 0; corner < 3; ++corner) {
@@ -164,18 +122,18 @@ core::ConvexHull symmetric_hull(Dice& dice) {
 SpeedScene heap_of_hulls(bool quick) {
   constexpr int kKinds = 8;
   const int count = quick ? 50 : 2000, across = quick ? 5 : 10;
-  Stage stage("hulls", quick ? 160 : 600, 0.5);
-  stage.fixed(core::Plane{});
-  Dice dice;
+  SceneBuilder stage("hulls");
+  stage.material(0.5).ground();
+  Chance dice(kSeed);
   std::vector<core::PrototypeId> kinds;
   for (int i = 0; i < kKinds; ++i) kinds.push_back(stage.kind(symmetric_hull(dice), 1));
   for (int i = 0; i < count; ++i) {
     const Vec3 p_W(i % across - 0.5 * (across - 1), i / across % across - 0.5 * (across - 1),
                    0.6 + i / (across * across));
-    const Quat q_WB = dice.rotation();
-    stage.body(kinds[static_cast<std::size_t>(i % kKinds)], {p_W + dice.in_cube(0.05), q_WB});
+    const Quat q_WB = shoemake_rotation(dice);
+    stage.body(kinds[static_cast<std::size_t>(i % kKinds)], {p_W + in_cube(dice, 0.05), q_WB});
   }
-  return stage.all();
+  return born_at_once(speed_scene_of("hulls", quick ? 160 : 600, stage.scene()));
 }
 
 /// The stairs of the shipped scene, wide enough for `lanes` m and with a longer landing.
@@ -205,11 +163,7 @@ void leave_out_what_differs(core::Scene& scene) {
 SpeedScene ragdolls_on_stairs(bool quick) {
   constexpr std::size_t kBodies = 11, kJoints = 10;
   const int lanes = quick ? 4 : 40, in_a_lane = quick ? 2 : 10;
-  SpeedScene all;
-  all.name = "ragdolls";
-  all.steps = quick ? 120 : 600;
-  all.states_every = all.steps / 4;
-  all.scene = shipped_scene("ragdoll_stairs.yaml");
+  SpeedScene all = speed_scene_of("ragdolls", quick ? 120 : 600, shipped_scene("ragdoll_stairs.yaml"));
   leave_out_what_differs(all.scene);
   widen_stairs(all.scene, lanes, in_a_lane);
   const std::vector<core::InitialBody> bodies(all.scene.bodies.begin(), all.scene.bodies.begin() + kBodies);
@@ -235,19 +189,14 @@ SpeedScene ragdolls_on_stairs(bool quick) {
       all.scene.joints.push_back(joint);
     }
   }
-  all.births.assign(all.scene.bodies.size(), 0);
-  return all;
+  return born_at_once(std::move(all));
 }
 
 /// Card houses as in the stability experiment.
 SpeedScene many_card_houses(bool quick) {
   const int count = quick ? 2 : 40, in_a_row = 8;
-  SpeedScene all;
-  all.name = "card_houses";
-  all.steps = quick ? 120 : 600;
-  all.states_every = all.steps / 4;
+  SpeedScene all = speed_scene_of("card_houses", quick ? 120 : 600, stability_case("card_house").scene);
   all.fallen_m = 0.2;
-  all.scene = stability_case("card_house").scene;
   const std::vector<core::InitialBody> cards = std::exchange(all.scene.bodies, {});
   for (int i = 0; i < count; ++i) {
     for (core::InitialBody card : cards) {
@@ -256,33 +205,32 @@ SpeedScene many_card_houses(bool quick) {
       all.scene.bodies.push_back(card);
     }
   }
-  all.births.assign(all.scene.bodies.size(), 0);
-  return all;
+  return born_at_once(std::move(all));
 }
 
 /// Elastic balls without friction or weight in a closed box.
 SpeedScene gas_in_a_box(bool quick) {
   const int across = quick ? 6 : 40;
   constexpr double kRadius = 0.25, kApart = 1, kSpeed = 5, kWall = 5;
-  Stage stage("gas", quick ? 120 : 300, 0, 1);
-  stage.all().scene.gravity = Vec3::Zero();
+  SceneBuilder stage("gas", Vec3::Zero());
+  stage.material(0, 1);
   const double half = 0.5 * kApart * across;
   for (int axis = 0; axis < 3; ++axis) {
     Vec3 half_extents = Vec3::Constant(half + 2 * kWall), p_W = Vec3::Zero();
     half_extents[axis] = kWall;
     p_W[axis] = half + kWall;
-    stage.fixed(core::Box{half_extents}, p_W);
-    stage.fixed(core::Box{half_extents}, -p_W);
+    stage.fixed(core::Box{half_extents}, {p_W, Quat::Identity()});
+    stage.fixed(core::Box{half_extents}, {-p_W, Quat::Identity()});
   }
   const core::PrototypeId ball = stage.kind(core::Sphere{kRadius}, 1);
-  Dice dice;
+  Chance dice(kSeed);
   for (int i = 0; i < across * across * across; ++i) {
     const Vec3 cell(i % across, i / across % across, i / (across * across));
     const Vec3 p_W = kApart * (cell + Vec3::Constant(0.5)) - Vec3::Constant(half);
-    const Vec3 v_W = dice.in_cube(kSpeed);
-    stage.body(ball, {p_W + dice.in_cube(0.2)}, v_W);
+    const Vec3 v_W = in_cube(dice, kSpeed);
+    stage.body(ball, {p_W + in_cube(dice, 0.2)}, v_W);
   }
-  return stage.all();
+  return born_at_once(speed_scene_of("gas", quick ? 120 : 300, stage.scene()));
 }
 
 using SceneMaker = SpeedScene (*)(bool quick);

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <random>
 
+#include "lab/pair.h"
 #include "lab/stability/scene_builder.h"
 
 namespace aurasim::lab {
@@ -104,8 +104,8 @@ Case balls() {
   constexpr double kRadius = 0.3, kApart = 0.8;
   Case c{"balls_666", "elastic, no friction: the energy stays (after Hwangbo's SimBenchmark, 666 balls)", 666, 2};
   c.uncertainty = 1;
-  std::mt19937_64 random(c.seed);
-  const auto jitter = [&] { return 0.1 * (static_cast<double>(random() >> 11) * 0x1p-53 - 0.5); };
+  Chance chance(c.seed);
+  const auto jitter = [&] { return 0.1 * (chance.between(0, 1) - 0.5); };
   SceneBuilder scene(c.name);
   scene.material(0, 1).ground();
   for (int i = 0; i < kBalls; ++i) {

@@ -19,6 +19,7 @@ SceneBuilder& SceneBuilder::material(double friction_of_pair, double restitution
   core::Material material;
   material.friction = std::sqrt(friction_of_pair);
   material.restitution = std::sqrt(restitution_of_pair);
+  if (scene_.prototypes.empty() && scene_.statics.empty()) scene_.materials.clear();
   scene_.materials.push_back(material);
   return *this;
 }
@@ -28,22 +29,25 @@ std::uint32_t SceneBuilder::shape_index(const core::Shape& shape) {
   return static_cast<std::uint32_t>(scene_.shapes.size() - 1);
 }
 
-core::BodyId SceneBuilder::body(const core::Shape& shape, double mass_kg, const Vec3& p_W, const Vec3& v_W,
-                                const Vec3& w_W, const core::Quat& q_WB) {
+core::PrototypeId SceneBuilder::kind(const core::Shape& shape, double mass_kg) {
   core::Prototype prototype;
   prototype.shape = shape_index(shape);
   prototype.material = static_cast<std::uint32_t>(scene_.materials.size() - 1);
   prototype.mass_kg = mass_kg;
   prototype.can_sleep = false;
-  core::InitialBody body;
-  body.id = core::BodyId{scene_.bodies.size()};
-  body.prototype = core::PrototypeId{static_cast<std::uint32_t>(scene_.prototypes.size())};
-  body.pose = {p_W, q_WB};
-  body.v_WB = v_W;
-  body.w_WB = w_W;
   scene_.prototypes.push_back(prototype);
-  scene_.bodies.push_back(body);
-  return body.id;
+  return core::PrototypeId{static_cast<std::uint32_t>(scene_.prototypes.size() - 1)};
+}
+
+core::BodyId SceneBuilder::body(core::PrototypeId kind, const core::Pose& pose, const Vec3& v_W, const Vec3& w_W) {
+  const core::BodyId id{scene_.bodies.size()};
+  scene_.bodies.push_back({id, kind, pose, v_W, w_W});
+  return id;
+}
+
+core::BodyId SceneBuilder::body(const core::Shape& shape, double mass_kg, const Vec3& p_W, const Vec3& v_W,
+                                const Vec3& w_W, const core::Quat& q_WB) {
+  return body(kind(shape, mass_kg), {p_W, q_WB}, v_W, w_W);
 }
 
 SceneBuilder& SceneBuilder::fixed(const core::Shape& shape, const core::Pose& pose) {

@@ -1,4 +1,4 @@
-// Scenes of the stability experiment, put together in code. Bodies never sleep, so that nothing hides an error.
+// Scenes put together in code. Bodies never sleep, so that nothing hides an error.
 #pragma once
 
 #include <optional>
@@ -17,6 +17,10 @@ class SceneBuilder {
   /// Material of all bodies and statics added after this. Bullet multiplies the values of two bodies, so the arguments
   /// are products for two bodies of this material.
   SceneBuilder& material(double friction_of_pair, double restitution_of_pair = 0);
+  core::PrototypeId kind(const core::Shape& shape, double mass_kg);
+  core::BodyId body(core::PrototypeId kind, const core::Pose& pose, const core::Vec3& v_W = core::Vec3::Zero(),
+                    const core::Vec3& w_W = core::Vec3::Zero());
+  /// Adds a body of a kind of its own.
   core::BodyId body(const core::Shape& shape, double mass_kg, const core::Vec3& p_W,
                     const core::Vec3& v_W = core::Vec3::Zero(), const core::Vec3& w_W = core::Vec3::Zero(),
                     const core::Quat& q_WB = core::Quat::Identity());
