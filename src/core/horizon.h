@@ -44,8 +44,10 @@ constexpr Step introduction(int lookahead) { return lookahead + 1 + 30; }
 /// A state is checked so many states later. Auras of other nodes arrive K states later. A cluster that joins late makes
 /// up its states after K, and they are published K - 1 later.
 constexpr Step check(int lookahead) { return 2 * lookahead - 1; }
-/// Number of states from one cut to the next.
-inline constexpr Step kBetweenCuts = 30;
+/// Number of states from one cut to the next. A redo computes at most so many states more than it has to.
+inline constexpr Step kBetweenCuts = 5;
+/// Number of states between the older cuts, which are kept for pairs that a redo has not brought together.
+inline constexpr Step kBetweenOlderCuts = 6 * kBetweenCuts;
 /// A redo goes back to a cut at least so many states before the touch that it has to prevent. The pair comes to one
 /// host through at most kMostHops pulls, and each is decided one state after its cause is known.
 constexpr Step before_touch(int lookahead) { return 2 + kMostHops * (lookahead + 1); }
@@ -64,8 +66,8 @@ constexpr Step promise(int lookahead) { return 2 * lookahead; }
 /// its earlier place has arrived and was looked at.
 constexpr Step homecoming(int lookahead) { return 2 * lookahead + 1; }
 /// Steps for which a cluster that holds pulled bodies waits for one of them to touch something before it goes home. A
-/// pull comes early by at most the way that both may leave their paths, stated four times as fast as they are
-/// (Push::of), through kMostHops regions: 28 K states for two that come together at half of their speed.
+/// pull comes early by at most the way that both may leave their paths, through kMostHops regions: less than 28 K
+/// states for two that come together at half of their speed.
 constexpr Step pull(int lookahead) { return 40 * lookahead; }
 /// For so many steps a broken promise can spoil decisions: until its auras and hand-offs are replaced, and both looks
 /// ahead are over.

@@ -14,6 +14,12 @@ constexpr std::size_t kOlderCuts = 4;
 
 constexpr std::size_t kMostCuts = 40;
 
+/// Memory of so many dropped cuts is kept for new ones.
+constexpr std::size_t kMostMemory = 4;
+
+/// Is the cut one that is kept for pairs that a redo has not brought together?
+bool is_older_kind(const Cut& cut) { return cut.step % core::horizon::kBetweenOlderCuts == 0; }
+
 bool same_pair(const core::TogetherPair& pair, const core::Alarm& alarm) {
   return pair.a == alarm.a && pair.b == alarm.b;
 }
@@ -33,17 +39,47 @@ void Cuts::note_spawn(const core::Order& order) {
 }
 
 void Cuts::forget(core::Step confirmed, bool alarms_given_up) {
+  const core::Step needed = before(confirmed + 1, 0).step;
   const core::Step oldest_needed = before(confirmed + 1, kOlderCuts).step;
-  while (cuts_.front().step < oldest_needed) cuts_.pop_front();
-  if (alarms_given_up && cuts_.size() > kMostCuts) cuts_.pop_front();
+  std::erase_if(cuts_, [&](Cut& cut) {
+    const bool stays =
+        cut.step >= needed || cut.step == oldest_needed || (cut.step > oldest_needed && is_older_kind(cut));
+    if (!stays) drop(cut);
+    return !stays;
+  });
+  if (!alarms_given_up || cuts_.size() <= kMostCuts) return;
+  drop(cuts_.front());
+  cuts_.pop_front();
 }
 
-/// The newest cut early enough to bring a pair that touched in state `touch` to one host, or `farther` cuts before it.
+/// The newest cut early enough to bring a pair that touched in state `touch` to one host, or `farther` cuts of the
+/// older kind before it.
 const Cut& Cuts::before(core::Step touch, std::size_t farther) const {
   const core::Step wanted = touch - core::horizon::before_touch(lookahead_);
-  std::size_t newest = 0;
-  while (newest + 1 < cuts_.size() && cuts_[newest + 1].step <= wanted) ++newest;
-  return cuts_[newest - std::min(newest, farther)];
+  std::size_t at = 0;
+  while (at + 1 < cuts_.size() && cuts_[at + 1].step <= wanted) ++at;
+  for (; farther > 0 && at > 0; --farther) {
+    do {
+      --at;
+    } while (at > 0 && !is_older_kind(cuts_[at]));
+  }
+  return cuts_[at];
+}
+
+void Cuts::drop(Cut& cut) {
+  if (memory_.size() < kMostMemory) memory_.push_back(std::move(cut.bodies));
+}
+
+void Cuts::clear() {
+  cuts_.clear();
+  memory_.clear();
+}
+
+core::ClusterState Cuts::take_memory() {
+  if (memory_.empty()) return {};
+  core::ClusterState memory = std::move(memory_.back());
+  memory_.pop_back();
+  return memory;
 }
 
 core::Redo Cuts::plan(std::span<const core::Alarm> alarms, std::vector<core::TogetherPair> together) {
@@ -68,7 +104,7 @@ core::Redo Cuts::plan(std::span<const core::Alarm> alarms, std::vector<core::Tog
 }
 
 Cut& Cuts::back_to(core::Step step) {
-  while (!cuts_.empty() && cuts_.back().step > step) cuts_.pop_back();
+  for (; !cuts_.empty() && cuts_.back().step > step; cuts_.pop_back()) drop(cuts_.back());
   if (cuts_.empty() || cuts_.back().step != step) {
     throw std::logic_error("there is no cut of state " + std::to_string(step));
   }

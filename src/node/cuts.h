@@ -37,16 +37,19 @@ class Cuts {
   explicit Cuts(int lookahead) : lookahead_(lookahead) {}
 
   void keep(Cut cut) { cuts_.push_back(std::move(cut)); }
-  void clear() { cuts_.clear(); }
+  void clear();
+  /// Memory of the bodies of a dropped cut, for the next one. Its contents mean nothing.
+  core::ClusterState take_memory();
   bool empty() const { return cuts_.empty(); }
   /// Precondition: not empty.
   core::Step oldest() const { return cuts_.front().step; }
   void note_arrival(const core::Adoption& adoption);
   void note_spawn(const core::Order& order);
 
-  /// Drops the cuts that are older than any that a redo can still go back to. All nodes go back to the same state, so
-  /// no node may drop its cut before all have confirmed later states. `alarms_given_up`: no alarm leads to a redo any
-  /// more, so one may stand for ever. Precondition: not empty.
+  /// Drops the cuts to which no redo can go back any more. Of those that are only needed for a pair that a redo has not
+  /// brought together, one every kBetweenOlderCuts states stays. All nodes go back to the same state, so no node may
+  /// drop its cut before all have confirmed later states. `alarms_given_up`: no alarm leads to a redo any more, so one
+  /// may stand for ever. Precondition: not empty.
   void forget(core::Step confirmed, bool alarms_given_up);
   /// The redo that brings the pairs of the alarms to one host. `together`: pairs that share a host already. If one of
   /// them has raised the first alarm, the redo goes back farther than the last one. Preconditions: not empty, and
@@ -57,9 +60,11 @@ class Cuts {
 
  private:
   const Cut& before(core::Step touch, std::size_t farther) const;
+  void drop(Cut& cut);
 
   int lookahead_;
   std::deque<Cut> cuts_;
+  std::vector<core::ClusterState> memory_;
   std::size_t stubborn_ = 0;  ///< number of redos in a row that have not brought a pair together
 };
 

@@ -181,7 +181,7 @@ class Node {
   bool may_go_back() const;
   bool redo_is_due() const { return redo_ && redo_->at_step <= current_step(); }
   void take_cut();
-  Cut cut() const;
+  Cut cut(core::ClusterState memory = {}) const;
   void forget_cuts();
   void order_redo();
   void put_back();

@@ -20,11 +20,13 @@ bool Node::may_go_back() const { return setup_.protocol.aura.redo && map_->size(
 void Node::take_cut() {
   if (!may_go_back()) return;
   const Timed timed(report_.durations.cut_s, setup_.clock);
-  cuts_.keep(cut());
+  cuts_.keep(cut(cuts_.take_memory()));
 }
 
-Cut Node::cut() const {
-  return {current_step(), world_.peek_all(), {}, to_be_born_, protocol_->claimer(), watch_.counts()};
+/// The cut of the present state. Uses `memory` for its bodies.
+Cut Node::cut(core::ClusterState memory) const {
+  world_.copy_all(memory);
+  return {current_step(), std::move(memory), {}, to_be_born_, protocol_->claimer(), watch_.counts()};
 }
 
 void Node::keep(core::Step last) {

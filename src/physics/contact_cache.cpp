@@ -12,6 +12,7 @@
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
 #include "physics/bullet_convert.h"
+#include "physics/prefetch.h"
 
 namespace aurasim::physics {
 namespace {
@@ -95,26 +96,28 @@ Parts parts_of(const double* row, bool compound0, bool compound1) {
   return {compound0 ? static_cast<int>(row[kIndexInA]) : -1, compound1 ? static_cast<int>(row[kIndexInB]) : -1};
 }
 
-void append_manifolds(std::vector<KeyedManifold> manifolds, core::ClusterState& cluster) {
+void write_manifolds(std::vector<KeyedManifold>& manifolds, core::ClusterState& cluster) {
   std::sort(manifolds.begin(), manifolds.end(), [](const KeyedManifold& a, const KeyedManifold& b) {
     if (std::tie(a.object0, a.object1) != std::tie(b.object0, b.object1)) {
       return std::tie(a.object0, a.object1) < std::tie(b.object0, b.object1);
     }
     return parts_of(*a.manifold) < parts_of(*b.manifold);
   });
+  cluster.manifolds.clear();
   std::size_t points = 0;
-  for (const KeyedManifold& keyed : manifolds) points += static_cast<std::size_t>(keyed.manifold->getNumContacts());
-  cluster.manifolds.reserve(cluster.manifolds.size() + manifolds.size());
-  cluster.points.reserve(cluster.points.size() + points * core::kContactPointDoubles);
   for (const auto& [object0, object1, manifold] : manifolds) {
-    const std::size_t first_point = cluster.points.size() / core::kContactPointDoubles;
     const auto point_count = static_cast<std::size_t>(manifold->getNumContacts());
     cluster.manifolds.push_back(
-        {object0, object1, static_cast<std::uint32_t>(first_point), static_cast<std::uint32_t>(point_count)});
-    cluster.points.resize((first_point + point_count) * core::kContactPointDoubles);
-    for (std::size_t i = 0; i < point_count; ++i) {
-      write_point(manifold->getContactPoint(static_cast<int>(i)),
-                  &cluster.points[(first_point + i) * core::kContactPointDoubles]);
+        {object0, object1, static_cast<std::uint32_t>(points), static_cast<std::uint32_t>(point_count)});
+    points += point_count;
+  }
+  cluster.points.resize(points * core::kContactPointDoubles);
+  double* row = cluster.points.data();
+  for (std::size_t i = 0; i < manifolds.size(); ++i) {
+    if (i + kPrefetchDistance < manifolds.size()) prefetch_points(*manifolds[i + kPrefetchDistance].manifold);
+    const btPersistentManifold& manifold = *manifolds[i].manifold;
+    for (int point = 0; point < manifold.getNumContacts(); ++point, row += core::kContactPointDoubles) {
+      write_point(manifold.getContactPoint(point), row);
     }
   }
 }

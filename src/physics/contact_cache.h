@@ -67,7 +67,8 @@ struct KeyedManifold {
   const btPersistentManifold* manifold = nullptr;
 };
 
-/// Appends the records of the manifolds to the cluster, in the order of objects and parts.
-void append_manifolds(std::vector<KeyedManifold> manifolds, core::ClusterState& cluster);
+/// Sets the records of the cluster to those of the manifolds, in the order of objects and parts. Sorts `manifolds`, and
+/// reuses the memory of the cluster.
+void write_manifolds(std::vector<KeyedManifold>& manifolds, core::ClusterState& cluster);
 
 }  // namespace aurasim::physics

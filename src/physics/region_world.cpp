@@ -72,7 +72,13 @@ core::ClusterState RegionWorld::peek(std::span<const core::BodyId> bodies) const
   return impl_->simulation.peek(bodies);
 }
 
-core::ClusterState RegionWorld::peek_all() const { return impl_->simulation.peek(impl_->simulation.body_ids()); }
+core::ClusterState RegionWorld::peek_all() const {
+  core::ClusterState all;
+  copy_all(all);
+  return all;
+}
+
+void RegionWorld::copy_all(core::ClusterState& all) const { impl_->simulation.copy_all(all); }
 
 void RegionWorld::put_back(core::Step step, const core::ClusterState& bodies) {
   impl_->simulation.release(impl_->simulation.body_ids());

@@ -61,6 +61,8 @@ class RegionWorld {
 
   /// The record of all bodies, including those not yet born.
   core::ClusterState peek_all() const;
+  /// Like peek_all(), into `all`, whose memory is reused.
+  void copy_all(core::ClusterState& all) const;
   /// Goes back to an earlier state, in which `bodies` are all bodies of this world. Orders are executed again when they
   /// are due.
   void put_back(core::Step step, const core::ClusterState& bodies);

@@ -42,6 +42,8 @@ class Simulation {
   core::ClusterState release(std::span<const core::BodyId> bodies);
   std::vector<core::ClusterState> release(std::span<const std::span<const core::BodyId>> clusters);
   core::ClusterState peek(std::span<const core::BodyId> bodies) const;
+  /// Like peek() of all bodies, into `all`, whose memory is reused.
+  void copy_all(core::ClusterState& all) const;
 
   bool contains(core::BodyId id) const { return table_.find(id) != nullptr; }
   std::size_t body_count() const { return table_.size(); }
@@ -143,6 +145,7 @@ class Simulation {
   std::uint64_t unbearable_ = 0;  ///< number of setpoints not applied
   std::vector<core::BodySetpoint> new_setpoints_;
 
+  mutable std::vector<KeyedManifold> copied_manifolds_;  ///< of copy_all(), kept for its memory
   bool snapshot_is_fresh_ = false;
   core::Snapshot snapshot_;
   bool records_are_fresh_ = false;

@@ -18,7 +18,7 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
 constexpr int kLookahead = 2;
-constexpr Step kEvery = 30;
+constexpr Step kEvery = core::horizon::kBetweenOlderCuts;
 
 Cut cut_of(Step step) { return {step, {}, {}, {}, core::RankClaimer(core::RegionId{0}, kLookahead, 0), {}}; }
 
@@ -88,6 +88,40 @@ TEST_F(CutsOfANode, WhatARedoMayStillNeedIsNotForgotten) {
   EXPECT_EQ(cuts_.oldest(), needed - 4 * kEvery) << "four older ones for a pair that stays apart";
   cuts_.forget(100'000, false);
   EXPECT_EQ(cuts_.oldest(), 300 - 4 * kEvery);
+}
+
+TEST_F(CutsOfANode, OfTheOnesBeforeAConfirmedStateOnlyEverySixthIsKept) {
+  Cuts cuts(kLookahead);
+  for (Step step = 0; step <= 300; step += core::horizon::kBetweenCuts) {
+    cuts.keep(cut_of(step));
+    cuts.forget(step - 20, false);
+  }
+  std::vector<Step> kept;
+  for (const Step step : {300, 295, 290, 285, 280, 275, 270, 265, 260, 255, 250, 245, 240, 210, 180, 150, 120}) {
+    try {
+      kept.push_back(cuts.back_to(step).step);
+    } catch (const std::logic_error&) {
+    }
+  }
+  const Step needed = 300 - 20 + 1 - core::horizon::before_touch(kLookahead);
+  std::vector<Step> expected;
+  for (Step step = 300; step + core::horizon::kBetweenCuts > needed; step -= core::horizon::kBetweenCuts) {
+    expected.push_back(step);
+  }
+  for (int i = 0; i < 4; ++i) {
+    Step step = (expected.back() - 1) / kEvery * kEvery;
+    expected.push_back(step);
+  }
+  EXPECT_EQ(kept, expected);
+}
+
+TEST_F(CutsOfANode, TheMemoryOfADroppedOneIsUsedAgain) {
+  EXPECT_EQ(cuts_.take_memory().bodies.capacity(), 0U);
+  Cut large = cut_of(330);
+  large.bodies.bodies.resize(100);
+  cuts_.keep(std::move(large));
+  cuts_.back_to(300);
+  EXPECT_GE(cuts_.take_memory().bodies.capacity(), 100U);
 }
 
 TEST_F(CutsOfANode, AnAlarmThatStandsForEverDoesNotKeepThemAll) {
