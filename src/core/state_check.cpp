@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/aura_precision.h"
 #include "core/horizon.h"
@@ -41,7 +42,11 @@ StateCheck::StateCheck(const Aura& aura, const Vicinity& vicinity, Step start)
 
 StateCheck::State& StateCheck::state(Step step) {
   auto place = std::find_if(states_.begin(), states_.end(), [&](const State& s) { return s.step >= step; });
-  if (place == states_.end() || place->step != step) place = states_.insert(place, State{step, {}, {}});
+  if (place != states_.end() && place->step == step) return *place;
+  place = states_.insert(place, std::exchange(spare_, {}));
+  place->step = step;
+  place->own.clear();
+  place->others.clear();
   return *place;
 }
 
@@ -71,11 +76,10 @@ void StateCheck::take(const Neighbour& neighbour) {
 
 void StateCheck::take_own(const Snapshot& snapshot, const InterestMatching& matching) {
   State& now = state(snapshot.step);
+  now.own.reserve(snapshot.bodies.size());
   for (std::uint32_t i = 0; i < snapshot.bodies.size(); ++i) {
     const BodyState& body = snapshot.bodies[i];
-    if (!matching.outside(i) && !matching.must_be_announced(i)) continue;
-    now.own.push_back({body.id, value_of(vicinity_.self), path_of(body, snapshot.step, aura_.clearance()),
-                       body.birth <= snapshot.step});
+    now.own.push_back({body.id, value_of(vicinity_.self), matching.path(i), body.birth <= snapshot.step});
   }
 }
 
@@ -94,7 +98,9 @@ void StateCheck::look(Step now, std::span<const Neighbour> neighbours) {
   }
   const Step last = std::min(now - horizon::check(lookahead), known - (lookahead - 1));
   for (; checked_ < last; ++checked_) check(checked_ + 1);
-  while (!states_.empty() && states_.front().step < checked_) states_.pop_front();
+  for (; !states_.empty() && states_.front().step < checked_; states_.pop_front()) {
+    spare_ = std::move(states_.front());
+  }
 }
 
 /// The motion of a body through the step that ends in `now`. Without `before`, its announcement has just begun: it was
@@ -274,20 +280,18 @@ void StateCheck::check(Step step) {
   step_ = step;
   gather_ways(before, after);
   if (others_.empty()) return;
-  Vec3 lo = others_.front().middle, hi = lo;
+  double reach_m = 0;
+  for (const Way& way : others_) reach_m += way.reach_m;
+  covered_.clear(std::max(4 * reach_m / static_cast<double>(others_.size()), 1e-3));
   const std::uint32_t world = others_.front().now->world;
   bool several = false;
   for (const Way& way : others_) {
-    lo = lo.cwiseMin(way.middle - Vec3::Constant(way.reach_m));
-    hi = hi.cwiseMax(way.middle + Vec3::Constant(way.reach_m));
+    covered_.add(way.middle, way.reach_m);
     several = several || way.now->world != world;
   }
   const double margin = aura_.rules().contact_margin_m + 2 * rounded_within_m(near_.top_radius());
   for (const Way& way : own_) {
-    const Vec3 reach = Vec3::Constant(way.reach_m + margin);
-    const bool apart =
-        ((way.middle + reach).array() < lo.array()).any() || ((way.middle - reach).array() > hi.array()).any();
-    if (!apart) compare_with_others(way, 0, margin);
+    if (covered_.may_meet(way.middle, way.reach_m + margin)) compare_with_others(way, 0, margin);
   }
   for (std::uint32_t i = 0; several && i < others_.size(); ++i) compare_with_others(others_[i], i + 1, margin);
 }

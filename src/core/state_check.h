@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/aura.h"
+#include "core/covered_columns.h"
 #include "core/near_index.h"
 #include "core/neighbour.h"
 #include "core/redo.h"
@@ -25,7 +26,8 @@ class StateCheck {
 
   /// Adds what a neighbour has published about the state applied(), and about earlier ones.
   void take(const Neighbour& neighbour);
-  /// Adds our bodies of a state that have to be announced.
+  /// Adds our bodies of a state, whether they were announced or not. A foreign body that left its path may have come to
+  /// one that was not. The foreign one was announced, because it is outside of its region or near the border.
   void take_own(const Snapshot& snapshot, const InterestMatching& matching);
   /// Adds a state that one of our bodies made up alone, as part of the `nth` cluster that joined. It shared no world
   /// with other bodies.
@@ -83,10 +85,12 @@ class StateCheck {
   const Vicinity& vicinity_;
   Step checked_;
   std::deque<State> states_;
+  State spare_;                    ///< memory for the next one of states_
   std::vector<Way> own_, others_;  ///< ways in the step that is being checked
   std::vector<Path> middles_;      ///< middles of others_, indexed by near_
   NearIndex near_;
-  Step step_ = 0;  ///< the step that is being checked
+  CoveredColumns covered_;  ///< by others_; most of our bodies are far from all of them
+  Step step_ = 0;           ///< the step that is being checked
   std::vector<Alarm> found_;
 };
 

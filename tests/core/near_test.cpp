@@ -1,10 +1,11 @@
-// The two indexes of places, against looking at every point.
+// The indexes of places, against looking at every point.
 #include <algorithm>
 #include <map>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "core/covered_columns.h"
 #include "core/near_index.h"
 #include "core/random.h"
 #include "core/spatial_grid.h"
@@ -20,16 +21,11 @@ std::vector<Vec3> random_points(Random& random, std::size_t count, double half_s
 
 class AGrid : public ::testing::Test {
  protected:
-  /// The points from `late` on are there only after the grid has been built.
-  void fill(const std::vector<Vec3>& points, double cell_m, std::size_t late) {
+  void fill(const std::vector<Vec3>& points, double cell_m) {
     grid.clear(cell_m);
-    for (std::uint32_t i = 0; i < points.size(); ++i) {
-      if (i == late) grid.build();
-      i < late ? grid.add(i, points[i]) : grid.insert(i, points[i]);
-    }
-    if (late >= points.size()) grid.build();
+    for (std::uint32_t i = 0; i < points.size(); ++i) grid.add(i, points[i]);
+    grid.build();
   }
-  void fill(const std::vector<Vec3>& points, double cell_m) { fill(points, cell_m, points.size()); }
   void expect_all_within(const std::vector<Vec3>& points, const Vec3& lo, const Vec3& hi) {
     std::map<std::uint32_t, int> visits;
     grid.for_each_in(lo, hi, [&](std::uint32_t i) { ++visits[i]; });
@@ -49,7 +45,7 @@ TEST_P(Grid, VisitsEveryPointInTheBoxOnce) {
   Random random("points");
   for (int run = 0; run < 40; ++run) {
     const std::vector<Vec3> points = random_points(random, 1 + random.below(300), 50);
-    fill(points, GetParam(), random.below(static_cast<std::uint32_t>(points.size()) + 1));
+    fill(points, GetParam());
     for (int query = 0; query < 40; ++query) {
       const Vec3 centre = random.in_box(60);
       const Vec3 half = (random.in_box(random.chance(0.3) ? 60 : 5)).cwiseAbs();
@@ -85,6 +81,39 @@ TEST_F(AGrid, CanBeFilledAgain) {
   fill({}, 2.0);
   EXPECT_TRUE(grid.empty());
   expect_all_within({}, Vec3::Constant(-60), Vec3::Constant(60));
+}
+
+TEST(Columns, AreCoveredWhereASphereIs) {
+  Random random("spheres");
+  int apart = 0;
+  for (int run = 0; run < 100; ++run) {
+    CoveredColumns columns;
+    columns.clear(random.between(0.5, 4));
+    std::vector<std::pair<Vec3, double>> spheres;
+    for (int i = 0; i < 20; ++i) {
+      spheres.emplace_back(random.in_box(100), random.between(0, 2));
+      columns.add(spheres.back().first, spheres.back().second);
+    }
+    for (int query = 0; query < 100; ++query) {
+      const Vec3 p = random.in_box(100);
+      const double r = random.between(0, 3);
+      const bool meets = std::ranges::any_of(
+          spheres, [&](const auto& sphere) { return (sphere.first - p).norm() <= sphere.second + r; });
+      ASSERT_TRUE(!meets || columns.may_meet(p, r));
+      apart += columns.may_meet(p, r) ? 0 : 1;
+    }
+  }
+  EXPECT_GT(apart, 8000) << "most are far from all";
+}
+
+TEST(Columns, ASphereThatIsEverywhereMeetsAll) {
+  CoveredColumns columns;
+  columns.clear(1);
+  EXPECT_FALSE(columns.may_meet(Vec3(1e6, 0, 0), 0.5));
+  EXPECT_TRUE(columns.may_meet(Vec3::Zero(), 1e6));
+  EXPECT_TRUE(columns.may_meet(Vec3(std::numeric_limits<double>::quiet_NaN(), 0, 0), 0.5));
+  columns.add(Vec3::Zero(), 1e6);
+  EXPECT_TRUE(columns.may_meet(Vec3(1e6, 0, 0), 0.5));
 }
 
 class Near : public ::testing::Test {
@@ -137,17 +166,6 @@ TEST_F(Near, KnowsTheTopSpeedAndRadius) {
   place(random, 0);
   EXPECT_EQ(index.top_speed(), 0);
   EXPECT_EQ(index.top_radius(), 0);
-}
-
-TEST_F(Near, ABodyThatTurnedOutFasterIsFoundFromFurtherAway) {
-  Random random("bodies");
-  place(random, 200);
-  for (std::uint32_t i = 0; i < paths.size(); i += 3) {
-    const double faster = paths[i].speed_m_s * random.between(1, 9);
-    index.raise(i, paths[i].pose.p_WB, paths[i].speed_m_s, faster);
-    paths[i].speed_m_s = faster;
-  }
-  for (int query = 0; query < 200; ++query) expect_found(random.in_box(50), 1, {0, 0.3});
 }
 
 TEST_F(Near, OneLargeBodyDoesNotWidenEveryQuery) {

@@ -52,7 +52,7 @@ class TheCheck : public ::testing::Test {
     BodyState& ours = own.bodies.emplace_back();
     ours.id = BodyId{1};
     ours.prototype = ball_;
-    ours.pose.p_WB = {-0.2, 0, 0};
+    ours.pose.p_WB = ours_at_;
     Ranks ranks(1);
     ranks.begin(step, RegionId{0}, {});
     matching_.look(own, {}, {}, ranks);
@@ -61,6 +61,7 @@ class TheCheck : public ::testing::Test {
     return check_.found();
   }
 
+  Vec3 ours_at_{-0.2, 0, 0};
   RoundShapes shapes_;
   PrototypeId ball_ = shapes_.sphere(0.5);
   RegionMap map_ = RegionMap::columns(2, 10);
@@ -89,6 +90,16 @@ TEST_F(TheCheck, FindsATouchInTheStateAfterTheOneInWhichTheyAreThatNear) {
   EXPECT_EQ(found[0].a, BodyId{1});
   EXPECT_EQ(found[0].b, BodyId{2});
   EXPECT_EQ(found[0].step, 1);
+}
+
+TEST_F(TheCheck, FindsATouchWithABodyOfOursThatWasNotAnnounced) {
+  ours_at_ = {-8, 0, 0};
+  look(0);
+  EXPECT_FALSE(matching_.must_be_announced(0));
+  publish(0, {body(2, 0, {-6.99, 0, 0})});
+  look(1);
+  publish(1, {body(2, 1, {-6.99, 0, 0})});
+  EXPECT_THAT(look(2), SizeIs(1));
 }
 
 TEST_F(TheCheck, LooksAtTheSubstepsInBetween) {
