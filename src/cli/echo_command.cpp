@@ -90,11 +90,11 @@ int echo(const EchoArguments& arguments) {
   const auto begin = Clock::now();
   const auto end = begin + std::chrono::duration<double>(arguments.duration_s);
   std::uint64_t left = arguments.count;
-  bool has_heard = false;
-  const auto nobody = [&] { return !has_heard && control.statuses().empty() && !host::stop_requested(); };
+  bool has_received = false;
+  const auto nobody = [&] { return !has_received && control.statuses().empty() && !host::stop_requested(); };
   while (!host::stop_requested() && (arguments.duration_s <= 0 || Clock::now() < end)) {
     if (const auto sample = topic.take()) {
-      has_heard = true;
+      has_received = true;
       print_sample(*sample, arguments.json);
       if (arguments.count > 0 && --left == 0) break;
     } else {

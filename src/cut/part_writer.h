@@ -60,9 +60,9 @@ class PartWriter {
   /// True if the last part of this kind is still being written.
   bool is_writing(SaveKind kind) const;
   /// Notes the saves that another region has or has not written, as its status says.
-  void hear(core::RegionId region, const std::vector<std::uint64_t>& saved,
-            const std::vector<std::uint64_t>& not_saved) {
-    ledger_.hear(region, saved, not_saved);
+  void receive(core::RegionId region, const std::vector<std::uint64_t>& saved,
+               const std::vector<std::uint64_t>& not_saved) {
+    ledger_.receive(region, saved, not_saved);
   }
   const SaveLedger& ledger() const { return ledger_; }
 

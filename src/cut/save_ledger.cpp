@@ -29,8 +29,8 @@ void SaveLedger::note_own(std::uint64_t save, bool is_written) {
   if (Open* const open = find(save)) (is_written ? open->has : open->without).insert(self_);
 }
 
-void SaveLedger::hear(core::RegionId region, const std::vector<std::uint64_t>& saved,
-                      const std::vector<std::uint64_t>& not_saved) {
+void SaveLedger::receive(core::RegionId region, const std::vector<std::uint64_t>& saved,
+                         const std::vector<std::uint64_t>& not_saved) {
   if (region == self_) return;
   for (Open& open : open_) {
     if (std::ranges::find(saved, open.save) != saved.end()) open.has.insert(region);

@@ -205,9 +205,9 @@ std::vector<messages::Status> ControlBus::spares() { return impl_->look().spares
 
 void ControlBus::hold_for_dead(std::uint64_t process) { impl_->roster.hold_for_dead(process); }
 
-void ControlBus::hear_of_death(const messages::RunCommand& lost) {
+void ControlBus::receive_death(const messages::RunCommand& lost) {
   if (lost.is_of_itself) return hold_for_dead(lost.process);
-  if (!impl_->roster.hear_of_death(lost.process)) refuse(lost, "its process lives");
+  if (!impl_->roster.receive_death(lost.process)) refuse(lost, "its process lives");
 }
 
 bool ControlBus::publish_map(const messages::WorldMap& map) {

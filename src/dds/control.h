@@ -61,7 +61,7 @@ class ControlBus {
   void hold_for_dead(std::uint64_t process);
   /// Handles the report `lost` of a death. It is believed at once if the process itself has sent it, and otherwise once
   /// the process shows no life. A report about a process that lives is refused.
-  void hear_of_death(const messages::RunCommand& lost);
+  void receive_death(const messages::RunCommand& lost);
 
   bool publish_map(const messages::WorldMap& map);
   /// Commands for another map than this one are refused from now on.

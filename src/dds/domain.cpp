@@ -62,7 +62,7 @@ Domain::Domain(const Settings& settings)
   install(qos, guard_, delay_line_);
   switch_intraprocess_delivery_off();
   messages::set_type_tables_up();
-  if (settings.keys) refusals_.emplace(settings.tell_refusal);
+  if (settings.keys) refusals_.emplace(settings.report_refusal);
   const auto closed = guard_->delivery().close();
   participant_.reset(
       DomainParticipantFactory::get_instance()->create_participant(settings.domain, qos, this, StatusMask::none()));

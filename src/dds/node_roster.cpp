@@ -181,7 +181,7 @@ std::vector<messages::Status> NodeRoster::spares() const {
   return spares;
 }
 
-bool NodeRoster::hear_of_death(std::uint64_t process) {
+bool NodeRoster::receive_death(std::uint64_t process) {
   for (const auto& [region, of_region] : received_) {
     const auto meant =
         std::ranges::find(of_region, process, [](const Received& one) { return one.seen.status.process; });

@@ -48,7 +48,7 @@ class NodeRoster {
   void hold_for_dead(std::uint64_t process) { dead_.insert(process); }
   /// Handles a report that `process` has died, which is believed once it shows no life. Returns false when it shows
   /// some.
-  bool hear_of_death(std::uint64_t process);
+  bool receive_death(std::uint64_t process);
 
   /// True when a sample of this origin was sent by `process` itself.
   bool is_of(std::uint64_t process, const Origin& origin) const;

@@ -54,7 +54,7 @@ struct ObservationServer::Impl {
         wakeup(participant.domain().wakeup()),
         interests(participant.domain(), on(TopicId::kInterest), wakeup) {}
 
-  void hear(core::Interest&& interest, const Origin& origin);
+  void receive(core::Interest&& interest, const Origin& origin);
   void forget_the_gone();
   void list();
   void refuse(const Origin& origin, const std::string& why) {
@@ -77,7 +77,7 @@ ObservationServer::ObservationServer(Participant& participant, core::RegionId re
 
 ObservationServer::~ObservationServer() = default;
 
-void ObservationServer::Impl::hear(core::Interest&& interest, const Origin& origin) {
+void ObservationServer::Impl::receive(core::Interest&& interest, const Origin& origin) {
   if (!limit.allows(origin.writer.guidPrefix, std::chrono::steady_clock::now())) {
     return refuse(origin, "too many a second");
   }
@@ -122,7 +122,7 @@ void ObservationServer::Impl::list() {
 void ObservationServer::look() {
   const auto refuse = [this](const wire::Interest&, messages::WireError) { ++impl_->refused; };
   impl_->interests.take_each(
-      {}, [this](core::Interest&& interest, const Origin& origin) { impl_->hear(std::move(interest), origin); },
+      {}, [this](core::Interest&& interest, const Origin& origin) { impl_->receive(std::move(interest), origin); },
       refuse);
   impl_->forget_the_gone();
   impl_->list();

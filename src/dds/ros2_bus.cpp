@@ -158,7 +158,7 @@ struct Ros2Bus::Impl {
     tell("/clock", kRos2Clock, "ros2_clock_writer", clock);
     tell("/tf", kRos2Tf, "ros2_tf_writer", tf);
     tell("/joint_states", kRos2JointState, "ros2_joint_states_writer", joints);
-    for (const std::string& name : settings.cmd_vel) hear(ros2_cmd_vel_topic(name));
+    for (const std::string& name : settings.cmd_vel) subscribe(ros2_cmd_vel_topic(name));
   }
 
   ~Impl() {
@@ -185,7 +185,7 @@ struct Ros2Bus::Impl {
     if (telling.writer == nullptr) throw DdsError(fmt::format("cannot create the writer of {} of ROS", name));
   }
 
-  void hear(const std::string& name) {
+  void subscribe(const std::string& name) {
     Topic& of_ros = topic(name, kRos2Twist);
     auto qos = profiles.reader(*subscriber, "ros2_cmd_vel_reader");
     qos.user_data().setValue(ros2_user_data(kRos2Twist));

@@ -74,7 +74,7 @@ MeshWriter::MeshWriter(Participant& participant) : impl_(std::make_unique<Impl>(
 
 MeshWriter::~MeshWriter() = default;
 
-bool MeshWriter::tell_again(std::uint64_t hash, const core::TriangleMesh& mesh) {
+bool MeshWriter::publish_again(std::uint64_t hash, const core::TriangleMesh& mesh) {
   return impl_->writer.send(messages::NamedMesh{hash, mesh, true}) != WriteResult::kFailed;
 }
 

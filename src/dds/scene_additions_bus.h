@@ -53,7 +53,7 @@ class MeshWriter {
   ~MeshWriter();
   /// Publishes a mesh, which stays available as long as this process lives. Returns false when topic shape takes no
   /// more.
-  bool tell_again(std::uint64_t hash, const core::TriangleMesh& mesh);
+  bool publish_again(std::uint64_t hash, const core::TriangleMesh& mesh);
 
  private:
   struct Impl;

@@ -48,7 +48,7 @@ class Listener final : public LogConsumer {
     const std::string category = entry.context.category == nullptr ? "" : entry.context.category;
     const bool is_error = entry.kind == Log::Kind::Error;
     if (category == kOurs || category == kReasons || (is_error && is_about_security(category, entry.message))) {
-      SecurityLog::instance().hear(entry.message, category);
+      SecurityLog::instance().receive(entry.message, category);
     } else if (is_error) {
       others_.Consume(entry);
     }
@@ -139,7 +139,7 @@ void SecurityLog::refused(const GUID_t& participant) {
   Log::QueueLog(kRefused + text_of(participant), Log::Context{__FILE__, __LINE__, __func__, kOurs}, Log::Kind::Warning);
 }
 
-void SecurityLog::hear(const std::string& message, const std::string& category) {
+void SecurityLog::receive(const std::string& message, const std::string& category) {
   std::vector<std::string> texts;
   std::map<int, Tell> tells;
   {

@@ -44,7 +44,7 @@ class SecurityLog {
   /// Handles that `participant` failed to prove its identity. Fast DDS has logged the reason just before.
   void refused(const eprosima::fastrtps::rtps::GUID_t& participant);
   /// Handles an entry of Fast DDS's log about security.
-  void hear(const std::string& message, const std::string& category);
+  void receive(const std::string& message, const std::string& category);
 
  private:
   using Clock = std::chrono::steady_clock;

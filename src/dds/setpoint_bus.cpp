@@ -72,7 +72,7 @@ std::vector<core::Setpoints> SetpointReader::take(core::Generation generation) {
   return taken;
 }
 
-bool SetpointReader::has_heard(const core::ProgramWord& word) const { return impl_->last_words.has(word); }
+bool SetpointReader::has_received(const core::ProgramWord& word) const { return impl_->last_words.has(word); }
 
 void SetpointReader::note_state() { impl_->rates.allow_more(kSetpointsAState); }
 

@@ -22,7 +22,7 @@ class SetpointReader {
   std::vector<core::Setpoints> take(core::Generation generation);
   /// True when the last take() or an earlier one received a message of this program with this number or a later one.
   /// True also when the message was for another generation or was dropped.
-  bool has_heard(const core::ProgramWord& word) const;
+  bool has_received(const core::ProgramWord& word) const;
   /// To be called when this node has computed a state: it allows each program one more message.
   void note_state();
   /// Number of messages dropped because their sender sent far more than a state needs, or because they were invalid.

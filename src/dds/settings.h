@@ -44,7 +44,7 @@ struct Settings {
   /// Keys to join a run with keys; nothing: an open run.
   std::optional<security::KeyFiles> keys;
   /// Called from DDS's threads with a sentence for each peer, reader or writer that is refused because of its keys.
-  std::function<void(const std::string&)> tell_refusal;
+  std::function<void(const std::string&)> report_refusal;
 };
 
 /// A profile, an endpoint or a peer is missing or wrong; what() names it and the file.

@@ -22,7 +22,7 @@ void CommandExecutor::execute(const messages::RunCommand& command) {
       if (!run_.start.is_awaited(command) || !is_plausible(command)) return;
       return run_.start.accept(with_clock_of(run_.control().statuses(), core::RegionId{0}, command));
     case Kind::kLost:
-      return run_.control().hear_of_death(command);
+      return run_.control().receive_death(command);
     case Kind::kRestore:
       if (is_plausible(command)) execute_restore(command);
       return;

@@ -1,5 +1,5 @@
-// Executes the run commands that a node receives (command_queue.h says which count, run_schedule.h what most of them
-// change).
+// Executes the run commands that a node receives (command_queue.h decides which count, run_schedule.h applies most
+// of them).
 #pragma once
 
 #include "process/node_runtime.h"

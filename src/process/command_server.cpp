@@ -21,7 +21,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kPatienceForMesh = 15s;
-constexpr auto kLongestUntold = 2s;
+constexpr auto kLongestUnanswered = 2s;
 constexpr double kLongestShown_s = 0.5;     ///< no observer shows older states
 constexpr auto kStatusAge = 300ms;          ///< time after a command in which every node publishes which meshes it has
 constexpr std::size_t kMostInAState = 300;  ///< commands that become orders in one state, at most
@@ -77,7 +77,7 @@ void CommandServer::change_map(core::Generation generation, core::Step step) {
 }
 
 void CommandServer::serve(node::Node& node, const RunView& run) {
-  tell_what_is_taken(node, run);
+  reply_accepted(node, run);
   // A new lead publishes the additions of a saved world to observers.
   if (!std::exchange(leads_, run.leads) && leads_ && !additions_.orders.empty()) send_additions();
   dds::MeshCache& meshes = mesh_reader_.meshes();  // takes in all meshes, for the lead's account of them
@@ -230,7 +230,7 @@ void CommandServer::decide(const core::Command& command, node::Node& node, const
     return;
   }
   if (std::string why = problem_with_world(command.ask); !why.empty()) return refuse(command.request, std::move(why));
-  if (const core::Order* const known = node.ordered(command.request)) return tell_again(*known, node);
+  if (const core::Order* const known = node.ordered(command.request)) return reply_again(*known, node);
   const core::Step known_at = node.protocol().earliest_effect();
   Issued issued = issuer_.issue(
       command, run.facts, [this](const core::MeshRef& mesh) { return make_mesh(mesh); }, node);
@@ -256,7 +256,7 @@ void CommandServer::decide(const core::Command& command, node::Node& node, const
 }
 
 /// Replies again to a request that is ordered already: by a lead that has died, or by this node before it started anew.
-void CommandServer::tell_again(const core::Order& order, const node::Node& node) {
+void CommandServer::reply_again(const core::Order& order, const node::Node& node) {
   core::CommandReply reply;
   reply.request = order.request;
   reply.outcome = core::Outcome::kAccepted;
@@ -269,10 +269,10 @@ void CommandServer::tell_again(const core::Order& order, const node::Node& node)
 
 /// Acknowledges orders that other nodes have by now. A paused world publishes no batches, and in slow motion they come
 /// too late for the client, so these are acknowledged early.
-void CommandServer::tell_what_is_taken(const node::Node& node, const RunView& run) {
+void CommandServer::reply_accepted(const node::Node& node, const RunView& run) {
   const bool stands = run.holds_at && node.current_step() >= *run.holds_at;
   std::erase_if(taken_, [&](Taken& one) {
-    const bool is_time = stands || one.went_back || Clock::now() > one.since + kLongestUntold;
+    const bool is_time = stands || one.went_back || Clock::now() > one.since + kLongestUnanswered;
     if (!is_time && node.current_step() < one.known_at) return false;
     if (one.went_back && node.ordered(one.reply.request) == nullptr) {
       endpoint_.forget(one.reply.request);  // a repeated request is served anew
@@ -314,9 +314,9 @@ void CommandServer::send_additions() {
   for (const core::Order& order : additions_.orders) {
     const core::MeshRef* const ref = mesh_defined_by(order);
     const core::TriangleMesh* const mesh = ref == nullptr ? nullptr : mesh_reader_.mesh(ref->hash);
-    if (mesh == nullptr || meshes_told_.contains(ref->hash)) continue;
+    if (mesh == nullptr || meshes_published_.contains(ref->hash)) continue;
     if (!mesh_writer_) mesh_writer_.emplace(participant_);
-    if (mesh_writer_->tell_again(ref->hash, *mesh)) meshes_told_.insert(ref->hash);
+    if (mesh_writer_->publish_again(ref->hash, *mesh)) meshes_published_.insert(ref->hash);
   }
   additions_writer_.send(additions_);
 }

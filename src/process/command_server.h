@@ -96,9 +96,9 @@ class CommandServer {
   void take_rate(const core::Command& command, const core::SetRate& ask, const node::Node& node);
   void reply_done(std::uint64_t request, core::Step step, std::optional<core::ObjectRef> object = {});
   void reply_all_done(core::Step step);
-  void tell_what_is_taken(const node::Node& node, const RunView& run);
+  void reply_accepted(const node::Node& node, const RunView& run);
   void take_over(node::Node& node, core::Generation generation);
-  void tell_again(const core::Order& order, const node::Node& node);
+  void reply_again(const core::Order& order, const node::Node& node);
   bool comes_after_the_pause(const core::Command& command, const node::Node& node, const RunView& run) const;
   void save_as_it_stands(const core::Command& command, const core::Save& ask, const node::Node& node,
                          const RunView& run);
@@ -118,7 +118,7 @@ class CommandServer {
   dds::Participant& participant_;
   dds::SceneAdditionsWriter additions_writer_;
   std::optional<dds::MeshWriter> mesh_writer_;  ///< made when the first mesh is published
-  std::set<std::uint64_t> meshes_told_;
+  std::set<std::uint64_t> meshes_published_;
   dds::SceneAdditions additions_;
   bool leads_ = false;
   std::vector<Asked> waiting_for_mesh_;

@@ -61,9 +61,9 @@ void AwaitedWords::add(const messages::RunCommand& step, Time now) {
   if (step.after.number > 0) words_.push_back({step.after, now});
 }
 
-bool AwaitedWords::are_here(const HasHeard& has_heard, Time now) {
+bool AwaitedWords::are_here(const HasReceived& has_received, Time now) {
   std::erase_if(words_, [&](const Awaited& awaited) {
-    if (has_heard(awaited.word)) return true;
+    if (has_received(awaited.word)) return true;
     if (now < awaited.since + kPatienceWithWords) return false;
     given_up_.push_back(awaited.word);
     return true;

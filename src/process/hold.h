@@ -62,7 +62,7 @@ core::Step farthest_pause(const std::map<core::RegionId, messages::SeenStatus>& 
 class AwaitedWords {
  public:
   using Time = std::chrono::steady_clock::time_point;
-  using HasHeard = std::function<bool(const core::ProgramWord&)>;
+  using HasReceived = std::function<bool(const core::ProgramWord&)>;
 
   /// Adds the messages that a step command names.
   void add(const messages::RunCommand& step, Time now);
@@ -71,7 +71,7 @@ class AwaitedWords {
   /// True if all messages have been received. A message that has not come after a second never will: its program has
   /// ended, or this node has taken the region over since. Such a message is given up, so that the nodes of a run go on
   /// together.
-  bool are_here(const HasHeard& has_heard, Time now);
+  bool are_here(const HasReceived& has_received, Time now);
   /// Messages that were given up since the last call.
   std::vector<core::ProgramWord> take_given_up() { return std::exchange(given_up_, {}); }
 

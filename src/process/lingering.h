@@ -24,7 +24,7 @@ class Lingering {
 
   /// True if the node has to stay longer. A node that others may need stays for a moment, and as long as some other
   /// node makes progress. `is_complete`: nobody needs anything of this node any more. `is_stopped`: the process was
-  /// told to stop.
+  /// asked to stop.
   bool stays(const SeenNodes& nodes, bool is_complete, bool is_stopped, Clock::time_point now);
 
  private:

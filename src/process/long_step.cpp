@@ -12,7 +12,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kLongStep = 2s;  // statuses come ten times a second
-constexpr auto kTellAfter = 10s;
+constexpr auto kLogAfter = 10s;
 
 /// How long the node has computed its step: the time since its last status, which it published before the step.
 std::optional<std::chrono::steady_clock::duration> computes_for(const messages::SeenStatus& seen,
@@ -38,14 +38,14 @@ bool computes_for_long(const std::map<core::RegionId, messages::SeenStatus>& nod
 
 std::optional<std::string> LongSteps::news(const messages::SeenStatus& seen, Clock::time_point now) {
   const auto time = computes_for(seen, now);
-  const auto told = told_.find(seen.status.region);
+  const auto logged = logged_.find(seen.status.region);
   if (!time) {
-    if (told != told_.end()) told_.erase(told);
+    if (logged != logged_.end()) logged_.erase(logged);
     return std::nullopt;
   }
-  const Clock::duration next = told == told_.end() ? Clock::duration(kTellAfter) : 2 * told->second;
+  const Clock::duration next = logged == logged_.end() ? Clock::duration(kLogAfter) : 2 * logged->second;
   if (*time < next) return std::nullopt;
-  told_[seen.status.region] = *time;
+  logged_[seen.status.region] = *time;
   return fmt::format("the node of region {} (process {}) computes one step for {} s, after state {}",
                      core::value_of(seen.status.region), seen.status.pid, whole_seconds(*time), seen.status.step);
 }

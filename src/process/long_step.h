@@ -29,7 +29,7 @@ class LongSteps {
   std::optional<std::string> news(const messages::SeenStatus& seen, Clock::time_point now);
 
  private:
-  std::map<core::RegionId, Clock::duration> told_;  ///< duration last logged, of steps that are not over yet
+  std::map<core::RegionId, Clock::duration> logged_;  ///< duration last logged, of steps that are not over yet
 };
 
 }  // namespace aurasim::process

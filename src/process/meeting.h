@@ -14,7 +14,7 @@
 
 namespace aurasim::process {
 
-/// What tells this node's run from others in the same DDS domain.
+/// Identity of this node's run. It distinguishes the run from others in the same DDS domain.
 struct OwnRun {
   core::RegionId region{};
   std::uint64_t run = 0;  ///< number of the run

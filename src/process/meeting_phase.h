@@ -13,7 +13,7 @@ class MeetingPhase {
  public:
   MeetingPhase(NodeRuntime& run, CommandExecutor& executor) : run_(run), executor_(executor) {}
 
-  // Each returns false if the process was told to stop, or has refused to run.
+  // Each of these functions returns false if the process was asked to stop, or has refused to run.
   /// Listens before anything is published: a node's endpoints would disturb a run that is already here.
   bool domain_is_free();
   bool meet_neighbours();

@@ -1,5 +1,5 @@
-// How the launcher handles a node that has been told to stop. As long as the node makes progress it is not interrupted,
-// because its report would be lost.
+// Decides how the launcher ends a node that it has asked to stop. As long as the node makes progress it is not
+// interrupted, because its report would be lost.
 #pragma once
 
 #include <chrono>
@@ -14,7 +14,7 @@ class NodeEnding {
  public:
   using Clock = std::chrono::steady_clock;
 
-  explicit NodeEnding(Clock::time_point told_to_stop) : begin_(told_to_stop), moved_(told_to_stop) {}
+  explicit NodeEnding(Clock::time_point stop_requested) : begin_(stop_requested), moved_(stop_requested) {}
 
   /// The signal to send now to a process that still runs. `seen`: status of its node; null if there is none. kTerminate
   /// is returned once.

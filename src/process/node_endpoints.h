@@ -64,7 +64,7 @@ class NodeEndpoints {
   /// Setpoints for this generation that arrived since the last call, of topic control and of ROS 2.
   std::vector<core::Setpoints> take_setpoints(core::Generation generation);
   std::uint64_t refused_setpoints() const;
-  /// Publishes to ROS 2 between two states, if the launch file says so. The live node of the lowest region also
+  /// Publishes to ROS 2 between two states, if the launch file asks for it. The live node of the lowest region also
   /// publishes the time.
   void publish_ros2(node::Node& node, core::Generation generation);
   /// Signs of life of all other regions, for the fence. A region whose node was never received from since this process

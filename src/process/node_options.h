@@ -1,4 +1,4 @@
-// What a node's process is told by its command line.
+// Options of a node's process, from its command line.
 #pragma once
 
 #include <chrono>

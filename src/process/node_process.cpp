@@ -234,7 +234,7 @@ void NodeProcess::take_setpoints() {
 /// True if all setpoints that step commands name have been received. No node computes the state before.
 bool NodeProcess::has_awaited_setpoints() {
   return run_.setpoints.has_all_awaited(
-      [this](const core::ProgramWord& word) { return run_.endpoints.programs().has_heard(word); },
+      [this](const core::ProgramWord& word) { return run_.endpoints.programs().has_received(word); },
       run_.node->current_step() + 1, Clock::now());
 }
 

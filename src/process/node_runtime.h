@@ -1,4 +1,4 @@
-// What all phases of a node's process share: its parts, and what happens to several of them at once, such as the
+// The parts of a node's process that all its phases share, and operations on several of them at once, such as the
 // beginning of a world or the publication of the status. The phases (meeting_phase.h, changing_phase.h,
 // recovering_phase.h, ending_phase.h) and the loop (node_process.h) wait and decide the order; nothing here waits.
 #pragma once

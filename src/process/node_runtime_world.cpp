@@ -108,7 +108,7 @@ std::vector<core::RegionId> NodeRuntime::keepers() {
 
 void NodeRuntime::keep_parts() {
   saving.keep_parts(*node, endpoints.commands(), checkpoints(), records.recorder());
-  saving.hear(control().statuses());
+  saving.receive(control().statuses());
   saving.reply(endpoints.commands());
   note_messages_of_saves();
 }

@@ -67,9 +67,9 @@ void NodeStatus::note_node(const node::Node& node) {
   window_.summarize(status_);
 }
 
-void NodeStatus::note_unheard(std::vector<core::RegionId> unheard) {
-  if (unheard == status_.dead) return;
-  status_.dead = std::move(unheard);
+void NodeStatus::note_unreachable(std::vector<core::RegionId> unreachable) {
+  if (unreachable == status_.dead) return;
+  status_.dead = std::move(unreachable);
   make_due();
 }
 

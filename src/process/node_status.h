@@ -48,7 +48,7 @@ class NodeStatus {
   void note_node(const node::Node& node);
   /// Replaces the regions that the node does not receive from. A change is published at once, because the others wait
   /// for a node that does not receive from all.
-  void note_unheard(std::vector<core::RegionId> unheard);
+  void note_unreachable(std::vector<core::RegionId> unreachable);
   /// Counts messages of processes that are no neighbours and that were refused; 0: none.
   void note_refused_strangers(std::uint64_t count);
   /// Number of messages of this region that were refused.

@@ -40,13 +40,13 @@ bool ObservationPublisher::look(node::Node& node) {
 void ObservationPublisher::after_step(node::Node& node, const node::StepReport& report) {
   if (!look(node)) return;
   feed_->note(report, node.protocol().departures().open());
-  tell_made_up(node, report);
+  publish_made_up(node, report);
   for (const dds::ObservationServer::Asked& asked : server_.asked()) {
     if (!asked.interest->is_for(report.step)) continue;
     ObserverPace& pace = served_[asked.key].pace;
     if (!pace.is_for(report.step, asked.interest->every)) continue;
-    if (tell(node, asked)) {
-      pace.note_told();
+    if (publish(node, asked)) {
+      pace.note_sent();
     } else {
       pace.note_too_slow();
     }
@@ -57,18 +57,18 @@ void ObservationPublisher::while_paused(node::Node& node) {
   if (!look(node)) return;
   for (const dds::ObservationServer::Asked& asked : server_.asked()) {
     const State now{asked.arrivals, settings_.generation, node.redos(), node.current_step()};
-    if (served_[asked.key].told.state != now) tell(node, asked);
+    if (served_[asked.key].published.state != now) publish(node, asked);
   }
-  tell_foreseen(node);
+  publish_foreseen(node);
 }
 
 /// Publishes states of bodies that are under way to this node. Usually they are made up when the bodies join; in a
 /// paused run the bodies have not joined yet.
-void ObservationPublisher::tell_foreseen(node::Node& node) {
+void ObservationPublisher::publish_foreseen(node::Node& node) {
   std::optional<std::vector<node::MadeUp>> foreseen;
   for (const dds::ObservationServer::Asked& asked : server_.asked()) {
-    Told& told = served_[asked.key].told;
-    if (std::exchange(told.hand_offs, node.hand_offs_to_come()) == node.hand_offs_to_come()) continue;
+    Published& published = served_[asked.key].published;
+    if (std::exchange(published.hand_offs, node.hand_offs_to_come()) == node.hand_offs_to_come()) continue;
     if (!foreseen) foreseen = node.foresee();
     for (const node::MadeUp& state : *foreseen) {
       const bool is_wanted = asked.interest->is_for(state.step) || state.step == node.current_step();
@@ -77,22 +77,22 @@ void ObservationPublisher::tell_foreseen(node::Node& node) {
   }
 }
 
-bool ObservationPublisher::tell(node::Node& node, const dds::ObservationServer::Asked& asked) {
+bool ObservationPublisher::publish(node::Node& node, const dds::ObservationServer::Asked& asked) {
   if (!server_.takes_more(asked.key)) return false;
-  Told& told = served_[asked.key].told;
+  Published& published = served_[asked.key].published;
   const State now{asked.arrivals, settings_.generation, node.redos(), node.current_step()};
   core::Observation observation =
       feed_->compose(*asked.interest, node.world().snapshot(), node.world().contact_impulses(), node.redos());
   observation.scene_order = node.newest_scene_order();
-  const bool goes_on =
-      told.state.arrivals == now.arrivals && told.state.generation == now.generation && told.state.redo == now.redo;
-  if (goes_on && told.state.step < now.step) observation.previous = told.state.step;
+  const bool goes_on = published.state.arrivals == now.arrivals && published.state.generation == now.generation &&
+                       published.state.redo == now.redo;
+  if (goes_on && published.state.step < now.step) observation.previous = published.state.step;
   if (!server_.send(asked.key, observation)) return false;
-  told = {now, 0};
+  published = {now, 0};
   return true;
 }
 
-void ObservationPublisher::tell_made_up(const node::Node& node, const node::StepReport& report) {
+void ObservationPublisher::publish_made_up(const node::Node& node, const node::StepReport& report) {
   for (const node::MadeUp& state : report.made_up) {
     for (const dds::ObservationServer::Asked& asked : server_.asked()) {
       if (asked.interest->is_for(state.step)) {

@@ -30,9 +30,9 @@ class ObservationPublisher {
  private:
   bool look(node::Node& node);
   /// Publishes to one observer. False if it takes no more now.
-  bool tell(node::Node& node, const dds::ObservationServer::Asked& asked);
-  void tell_made_up(const node::Node& node, const node::StepReport& report);
-  void tell_foreseen(node::Node& node);
+  bool publish(node::Node& node, const dds::ObservationServer::Asked& asked);
+  void publish_made_up(const node::Node& node, const node::StepReport& report);
+  void publish_foreseen(node::Node& node);
 
   struct State {
     std::uint64_t arrivals = 0;
@@ -42,13 +42,13 @@ class ObservationPublisher {
 
     bool operator==(const State&) const = default;
   };
-  struct Told {
+  struct Published {
     State state;
     std::size_t hand_offs = 0;  ///< hand-offs that had come without effect yet; their bodies were published, too
   };
 
   struct Served {
-    Told told;  ///< what was published last
+    Published published;  ///< what was published last
     ObserverPace pace;
   };
 

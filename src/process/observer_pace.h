@@ -16,7 +16,7 @@ class ObserverPace {
  public:
   /// True if state `step` is to be sent to an observer that asked for multiples of `every`.
   bool is_for(core::Step step, std::uint32_t every) const { return step % (core::Step{every} * apart_) == 0; }
-  void note_told() {
+  void note_sent() {
     if (apart_ == 1 || ++in_a_row_ < kUntilMore) return;
     apart_ /= 2;
     in_a_row_ = 0;

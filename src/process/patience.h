@@ -1,4 +1,4 @@
-// How long a process waits for others. Time is passed in.
+// Time limits for waiting for other processes. Time is passed in.
 #pragma once
 
 #include <algorithm>

@@ -75,8 +75,8 @@ bool RecoveringPhase::agree_on_restore() {
       give_up(acts.vacant);
       return false;
     }
-    run_.status.note_unheard(
-        unheard_regions(nodes, run_.options.region, static_cast<std::uint32_t>(run_.launch.regions.size())));
+    run_.status.note_unreachable(
+        unreachable_regions(nodes, run_.options.region, static_cast<std::uint32_t>(run_.launch.regions.size())));
     run_.publish(what_recovery_waits_for(run_.fence.is_cut_off(), run_.restoration.question(), acts.vacant,
                                          run_.status.content().dead));
     execute(acts);
@@ -88,7 +88,8 @@ bool RecoveringPhase::agree_on_restore() {
   return true;
 }
 
-/// Executes what this node has to do for regions without a node, and joins DDS anew where some others do not hear it.
+/// Executes what this node has to do for regions without a node, and joins DDS anew where some others do not
+/// receive from it.
 void RecoveringPhase::execute(const RecoveryActs& acts) {
   const auto& interfaces = run_.endpoints.participant().settings().interfaces;
   if (acts.meets_anew && dds::all_links_are_up(dds::interfaces_of_this_host(), interfaces)) join_anew();

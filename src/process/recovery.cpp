@@ -14,8 +14,8 @@ using messages::NodeState;
 
 constexpr auto kPatienceWithSpare = 5s;
 constexpr auto kLaunchersFirst = 5s;
-/// Patience with a node that is heard but receives from too few others. A repaired link is noticed within a second or
-/// two.
+/// Patience with a node that is reachable but receives from too few others. A repaired link is noticed within a second
+/// or two.
 constexpr auto kPatienceWithCutOff = 5s;
 /// Patience with discovery, which takes about a second in a healthy network.
 constexpr auto kPatienceWithDiscovery = 2500ms;
@@ -35,22 +35,22 @@ bool stands(NodeState state) {
 
 }  // namespace
 
-bool is_heard(const messages::SeenStatus& seen) { return !seen.lost && !seen.has_ended(); }
+bool is_reachable(const messages::SeenStatus& seen) { return !seen.lost && !seen.has_ended(); }
 
-std::vector<core::RegionId> unheard_regions(const SeenNodes& nodes, core::RegionId self, std::uint32_t regions) {
-  std::vector<core::RegionId> unheard;
+std::vector<core::RegionId> unreachable_regions(const SeenNodes& nodes, core::RegionId self, std::uint32_t regions) {
+  std::vector<core::RegionId> unreachable;
   for (std::uint32_t r = 0; r < regions; ++r) {
     const auto seen = nodes.find(core::RegionId{r});
-    const bool hears = core::RegionId{r} == self || (seen != nodes.end() && is_heard(seen->second));
-    if (!hears) unheard.push_back(core::RegionId{r});
+    const bool receives = core::RegionId{r} == self || (seen != nodes.end() && is_reachable(seen->second));
+    if (!receives) unreachable.push_back(core::RegionId{r});
   }
-  return unheard;
+  return unreachable;
 }
 
 std::optional<core::Step> newest_complete(const SeenNodes& nodes, core::Generation era, std::uint32_t regions) {
   std::map<core::Step, std::set<core::RegionId>> kept;
   for (const auto& [region, seen] : nodes) {
-    if (!is_heard(seen) || seen.status.era != era) continue;
+    if (!is_reachable(seen) || seen.status.era != era) continue;
     for (const messages::KeptPart& part : seen.status.parts) kept[part.step].insert(part.region);
   }
   for (auto state = kept.rbegin(); state != kept.rend(); ++state) {
@@ -105,14 +105,14 @@ RestoreMeaning meaning_of(const messages::RunCommand& restore, core::RegionId re
 
 std::string what_recovery_waits_for(bool is_cut_off, const std::string& question,
                                     const std::vector<core::RegionId>& vacant,
-                                    const std::vector<core::RegionId>& unheard) {
+                                    const std::vector<core::RegionId>& unreachable) {
   if (is_cut_off) return "hears too few of the others, and waits for them";
   if (!question.empty()) return question;
   if (!vacant.empty()) {
     return fmt::format("waits for whoever takes over regions [{}]", fmt::join(numbers_of(vacant), ", "));
   }
-  if (!unheard.empty()) {
-    return fmt::format("does not hear regions [{}], which others hear", fmt::join(numbers_of(unheard), ", "));
+  if (!unreachable.empty()) {
+    return fmt::format("does not hear regions [{}], which others hear", fmt::join(numbers_of(unreachable), ", "));
   }
   return "waits until all others stand";
 }
@@ -132,7 +132,7 @@ RecoveryActs Recovery::look(const RecoveryView& view, Clock::time_point now) {
   for (const auto& [region, seen] : view.nodes) {
     const bool computes = seen.status.state == NodeState::kRunning || seen.status.state == NodeState::kPaused;
     const auto left_out = left_out_.find(seen.status.generation);
-    if (is_heard(seen) && computes && left_out != left_out_.end()) acts.replaced_in = left_out->second;
+    if (is_reachable(seen) && computes && left_out != left_out_.end()) acts.replaced_in = left_out->second;
   }
   acts.meets_anew = meets_anew(view, now);
   for (std::uint32_t r = 0; r < settings_.regions; ++r) {
@@ -162,13 +162,13 @@ RecoveryActs Recovery::look(const RecoveryView& view, Clock::time_point now) {
   return acts;
 }
 
-/// A region is vacant in two cases. Neither this node nor any node that it hears receives from the region's node; or
-/// that node has published for some seconds that it receives from too few others, because only one direction of its
-/// link works.
+/// A region is vacant in two cases. Neither this node nor any node that it receives from gets messages of the region's
+/// node; or that node has published for some seconds that it receives from too few others, because only one direction
+/// of its link works.
 bool Recovery::is_vacant(core::RegionId region, const SeenNodes& nodes, Clock::time_point now) {
   if (region == settings_.region) return false;
   const auto seen = nodes.find(region);
-  if (seen != nodes.end() && is_heard(seen->second)) {
+  if (seen != nodes.end() && is_reachable(seen->second)) {
     if (seen->second.status.state != NodeState::kCutOff) {
       cut_off_since_.erase(region);
       return false;
@@ -179,7 +179,7 @@ bool Recovery::is_vacant(core::RegionId region, const SeenNodes& nodes, Clock::t
   cut_off_since_.erase(region);
   return std::ranges::none_of(nodes, [&](const auto& entry) {
     const auto& [other, status] = entry;
-    if (other == region || other == settings_.region || !is_heard(status)) return false;
+    if (other == region || other == settings_.region || !is_reachable(status)) return false;
     if (status.status.state != NodeState::kRecovering) return false;
     return std::ranges::find(status.status.dead, region) == status.status.dead.end();
   });
@@ -190,13 +190,13 @@ bool Recovery::is_vacant(core::RegionId region, const SeenNodes& nodes, Clock::t
 /// never matches such a pair again, because the acknowledgements of the one count from the beginning and the other
 /// takes them for old. A process that joins DDS anew is a new one to both.
 bool Recovery::meets_anew(const RecoveryView& view, Clock::time_point now) {
-  const bool is_unheard = std::ranges::any_of(view.nodes, [this](const auto& entry) {
+  const bool is_unreachable = std::ranges::any_of(view.nodes, [this](const auto& entry) {
     const auto& [region, seen] = entry;
-    const bool hears_most = seen.status.state == NodeState::kRecovering || seen.status.state == NodeState::kSpare;
-    return region != settings_.region && is_heard(seen) && hears_most &&
+    const bool receives_most = seen.status.state == NodeState::kRecovering || seen.status.state == NodeState::kSpare;
+    return region != settings_.region && is_reachable(seen) && receives_most &&
            std::ranges::find(seen.status.dead, settings_.region) != seen.status.dead.end();
   });
-  if (!settings_.can_be_cut || !(is_unheard || view.is_cut_off)) {
+  if (!settings_.can_be_cut || !(is_unreachable || view.is_cut_off)) {
     unmet_since_.reset();
     return false;
   }
@@ -252,11 +252,12 @@ void Recovery::note_kept(const SeenNodes& nodes, core::Generation era) {
   if (const auto newest = newest_complete(nodes, era, settings_.regions)) kept_ = std::max(kept_.value_or(0), *newest);
 }
 
-/// True if all heard nodes of other regions have only come to take over, too. A node that is cut off still knows the
-/// world.
+/// True if all reachable nodes of other regions have only come to take over, too. A node that is cut off still knows
+/// the world.
 bool Recovery::nobody_knows_the_world(const SeenNodes& nodes, Clock::time_point now) {
   const bool somebody_does = std::ranges::any_of(nodes, [this](const auto& entry) {
-    return entry.first != settings_.region && is_heard(entry.second) && entry.second.status.state != NodeState::kSpare;
+    return entry.first != settings_.region && is_reachable(entry.second) &&
+           entry.second.status.state != NodeState::kSpare;
   });
   if (somebody_does) alone_since_ = now;
   return now > alone_since_ + kPatienceOfSuccessor;
@@ -267,7 +268,7 @@ bool Recovery::is_not_needed(const SeenNodes& nodes, Clock::time_point now) {
   std::uint32_t there = 0;
   for (const auto& [region, seen] : nodes) {
     has_finished = has_finished || seen.status.state == NodeState::kFinished;
-    if (region == settings_.region || !is_heard(seen)) continue;
+    if (region == settings_.region || !is_reachable(seen)) continue;
     ++there;
     computes = computes || seen.status.state == NodeState::kRunning;
     waits = waits || seen.status.state == NodeState::kRecovering || seen.status.state == NodeState::kCutOff;

@@ -18,20 +18,20 @@ namespace aurasim::process {
 using SeenNodes = std::map<core::RegionId, messages::SeenStatus>;
 
 /// True if the node's liveliness has not ended and it has not published that it ends. It may be cut off all the same.
-bool is_heard(const messages::SeenStatus& seen);
+bool is_reachable(const messages::SeenStatus& seen);
 
 /// Regions 0 to `regions` - 1 whose nodes the node of region `self` does not receive from.
-std::vector<core::RegionId> unheard_regions(const SeenNodes& nodes, core::RegionId self, std::uint32_t regions);
+std::vector<core::RegionId> unreachable_regions(const SeenNodes& nodes, core::RegionId self, std::uint32_t regions);
 
-/// The newest state of which every region's part is kept by some node that is heard (is_heard). Parts of another era do
+/// The newest state of which every region's part is kept by some reachable node (is_reachable). Parts of another era do
 /// not count.
 std::optional<core::Step> newest_complete(const SeenNodes& nodes, core::Generation era, std::uint32_t regions);
 
-/// Message for users: what a node waits for in a recovery. `vacant`: regions without a node. `unheard`: regions that
-/// the node does not receive from. `question`: decision that a user has to take; empty: none.
+/// Message for users: what a node waits for in a recovery. `vacant`: regions without a node. `unreachable`: regions
+/// that the node does not receive from. `question`: decision that a user has to take; empty: none.
 std::string what_recovery_waits_for(bool is_cut_off, const std::string& question,
                                     const std::vector<core::RegionId>& vacant,
-                                    const std::vector<core::RegionId>& unheard);
+                                    const std::vector<core::RegionId>& unreachable);
 /// Why the run ends when no process takes over these regions, whose nodes have died.
 std::string nobody_takes_over(const std::vector<core::RegionId>& vacant);
 
@@ -141,7 +141,7 @@ class Recovery {
   std::map<core::Generation, core::Step> left_out_;
   std::optional<Clock::time_point> unmet_since_;
   Clock::time_point met_;                                      ///< when this process last left DDS and joined it again
-  std::map<core::RegionId, Clock::time_point> cut_off_since_;  ///< heard nodes that publish that they are cut off
+  std::map<core::RegionId, Clock::time_point> cut_off_since_;  ///< reachable nodes that publish kCutOff
   std::map<core::RegionId, Clock::time_point> called_;         ///< regions that spares were called for
   std::set<std::uint64_t> called_spares_;                      ///< their processes
   std::map<core::RegionId, StandIn> stood_in_;                 ///< how often in a row this host stood in for a region

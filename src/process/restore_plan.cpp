@@ -10,13 +10,14 @@ namespace {
 using Nodes = std::map<core::RegionId, messages::SeenStatus>;
 using messages::NodeState;
 
-/// Stands and hears all others. A node that does not could not take part: all would wait for it in vain.
+/// True if the node stands and receives from all others. A node that does not cannot take part in the recovery: all
+/// would wait for it in vain.
 bool is_ready(const messages::SeenStatus& seen) {
   const bool stands = seen.status.state == NodeState::kRecovering || seen.status.state == NodeState::kSpare;
   return !seen.lost && stands && seen.status.dead.empty();
 }
 
-/// Has a world of this era.
+/// True if the node has a world of this era.
 bool survives(const messages::Status& status, core::Generation era) {
   return status.state == NodeState::kRecovering && status.era == era;
 }

@@ -10,8 +10,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A listener that is known here may not know this node yet. In a run that stands it is told once more.
-constexpr auto kUntilKnown = std::chrono::milliseconds(300), kUntilToldAgain = std::chrono::milliseconds(1000);
+/// A ROS 2 reader that this node has discovered may not have discovered this node yet. In a paused run the state is
+/// published to it once more after these times.
+constexpr auto kUntilKnown = std::chrono::milliseconds(300), kUntilSentAgain = std::chrono::milliseconds(1000);
 
 dds::Ros2Settings ros2_settings(const config::Launch& launch, core::RegionId region) {
   dds::Ros2Settings settings;
@@ -36,7 +37,8 @@ void Ros2Link::begin(core::Generation generation) {
   next_ = 0;
 }
 
-/// States that are computed again are not told again: ROS's time would go back.
+/// True if state `step` is to be published. States that are computed again are not published again: ROS's time would go
+/// back.
 bool Ros2Link::is_due(core::Step step) {
   const Clock::time_point now = Clock::now();
   const std::uint64_t arrivals = bus_.arrivals();
@@ -46,7 +48,7 @@ bool Ros2Link::is_due(core::Step step) {
     if (somebody_came_at_ && now >= *somebody_came_at_ + kUntilKnown) somebody_came_at_.reset();
     return true;
   }
-  const bool again = somebody_came_at_ && now >= *somebody_came_at_ + kUntilToldAgain && step + tick_steps_ >= next_;
+  const bool again = somebody_came_at_ && now >= *somebody_came_at_ + kUntilSentAgain && step + tick_steps_ >= next_;
   if (again) somebody_came_at_.reset();
   return again;
 }

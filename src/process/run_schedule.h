@@ -22,7 +22,7 @@ class RunSchedule {
   RunSchedule(double step_s, bool keeps_pace, std::optional<core::Step> stop_at)
       : step_s_(step_s), pacer_(step_s, keeps_pace), stop_at_(stop_at) {}
 
-  /// A world begins with state `first`, which is due when `start` says. It is not paused.
+  /// Begins a world with state `first`, which is due at the time of `start`. The world is not paused.
   void begin_world(core::Step first, const messages::RunCommand& start, const node::Instant& now);
   /// State `first` of the world is there.
   void note_begun(core::Step first, Clock::time_point now);

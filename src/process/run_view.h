@@ -1,4 +1,4 @@
-// What the lead knows of the run when it serves clients, from the statuses that nodes publish.
+// The lead's knowledge of the run while it serves clients, from the statuses that nodes publish.
 #pragma once
 
 #include "process/command_server.h"

@@ -83,10 +83,10 @@ void Saving::keep_checkpoints(Checkpoints& checkpoints, records::Recorder* recor
     secured_ = recorded_;
   }
   checkpoints.progress(secured_);
-  if (checkpoints.left_out() == 0 || std::exchange(says_left_out_, true)) return;
+  if (checkpoints.left_out() == 0 || std::exchange(left_out_reported_, true)) return;
   std::vector<std::uint32_t> keepers;
   for (const core::RegionId keeper : checkpoints.keepers()) keepers.push_back(core::value_of(keeper));
-  say(
+  report(
       fmt::format("one of regions [{}], which keep copies of this region, takes longer to receive a part of the world "
                   "than from one checkpoint to the next: after a death all may have to go back farther "
                   "(survival.checkpoint)",
@@ -113,7 +113,7 @@ void Saving::save_as_it_stands(node::Node& node, CommandServer& server) {
 void Saving::look_at_doubtful(const node::Node& node, std::optional<core::Step> back_to) {
   std::erase_if(doubtful_, [&](const StandingSave& save) {
     if (!back_to || save.step <= *back_to) return save.step <= node.confirmed_step();
-    say(fmt::format(
+    report(fmt::format(
         "{} was saved in state {}, which is computed again since bodies had touched on two nodes: save it anew",
         save.file, save.step));
     return true;
@@ -128,21 +128,21 @@ void Saving::save_regularly(node::Node& node, core::Step first) {
   node.order(core::Save{fmt::format("state-{}.cut", saved_last_)}, 0, saved_last_);
 }
 
-void Saving::hear(const std::map<core::RegionId, messages::SeenStatus>& statuses) {
-  for (const auto& [region, seen] : statuses) writer_.hear(region, seen.status.saved, seen.status.not_saved);
+void Saving::receive(const std::map<core::RegionId, messages::SeenStatus>& statuses) {
+  for (const auto& [region, seen] : statuses) writer_.receive(region, seen.status.saved, seen.status.not_saved);
 }
 
 void Saving::reply(CommandServer& server) {
   for (const cut::PartWriter::Written& written : writer_.progress(std::chrono::steady_clock::now())) {
     if (written.request != 0) server.reply_saved(written);
   }
-  for (std::string& words : writer_.take_words()) say(std::move(words));
+  for (std::string& words : writer_.take_words()) report(std::move(words));
 }
 
 void Saving::conclude(CommandServer& server, const std::map<core::RegionId, messages::SeenStatus>& statuses,
                       bool is_over) {
   writer_.finish();
-  hear(statuses);
+  receive(statuses);
   reply(server);
   if (is_over && !options_.has_launcher && options_.kept) {
     for (const std::uint64_t run : runs_) {
@@ -157,7 +157,7 @@ cut::SavedWorld Saving::as_saved(core::WorldCut part) const {
           static_cast<std::uint32_t>(launch_.regions.size()), 0, std::move(part)};
 }
 
-void Saving::say(std::string words) {
+void Saving::report(std::string words) {
   spdlog::warn("region {}: {}", core::value_of(options_.region), words);
   words_.push_back(std::move(words));
 }

@@ -1,6 +1,6 @@
 // The parts of the world that a node keeps while it runs: parts of saved worlds as files, states for survival.disk, and
-// checkpoints to go back to when a node has died. Decides which states are kept and when a part counts; it is told what
-// happens and names no topic.
+// checkpoints to go back to when a node has died. Decides which states are kept and when a part counts; the
+// caller passes in what happens, and no topic is named here.
 #pragma once
 
 #include <cstdint>
@@ -58,8 +58,8 @@ class Saving {
   /// Orders the regular saves (--save-every). Only the lead calls this. `first`: the state that the run began with.
   void save_regularly(node::Node& node, core::Step first);
 
-  /// Notes what the nodes' statuses say of their parts.
-  void hear(const std::map<core::RegionId, messages::SeenStatus>& statuses);
+  /// Applies what the nodes' statuses contain about their parts.
+  void receive(const std::map<core::RegionId, messages::SeenStatus>& statuses);
   /// Replies to the clients whose parts have been written. Every node replies for its own part.
   void reply(CommandServer& server);
   /// Returns when everything is written. `is_over`: the run has come to its end, so states kept on disk for it are of
@@ -81,7 +81,7 @@ class Saving {
   core::Step kept_every() const;
   void keep_on_disk(const core::WorldCut& part, CommandServer& server);
   void keep_checkpoints(Checkpoints& checkpoints, records::Recorder* recorder);
-  void say(std::string words);
+  void report(std::string words);
 
   const config::Launch& launch_;
   const NodeOptions& options_;
@@ -95,7 +95,7 @@ class Saving {
   core::Step checkpoint_ = 0;           ///< the last state that the node was asked to keep
   core::Step recorded_ = 0;
   core::Step secured_ = 0;  ///< records up to this state are on disk
-  bool says_left_out_ = false;
+  bool left_out_reported_ = false;
   std::vector<std::string> words_;
 };
 

@@ -14,27 +14,28 @@ void SetpointIntake::take(std::span<const core::Setpoints> received, std::uint64
         break;
       case core::Heard::kLate:
         ++counts_.late;
-        if (!std::exchange(says_late_, true)) {
+        if (!std::exchange(late_logged_, true)) {
           spdlog::warn("setpoints for state {} have come in state {}; how many are late is counted", setpoints.at_step,
                        step);
         }
         break;
       case core::Heard::kRefused:
-        ++unheard_;
+        ++not_taken_;
         break;
     }
     ++counts_.received;
   }
-  counts_.refused = endpoints_refused + unheard_ + unbearable_;
-  if (counts_.refused > 0 && !std::exchange(says_refused_, true)) {
+  counts_.refused = endpoints_refused + not_taken_ + unbearable_;
+  if (counts_.refused > 0 && !std::exchange(refused_logged_, true)) {
     spdlog::warn("setpoints were refused: not understood, too many, too far ahead, or more than a body can bear");
   }
 }
 
-bool SetpointIntake::has_all_awaited(const AwaitedWords::HasHeard& has_heard, core::Step next, Clock::time_point now) {
-  const bool all_received = awaited_.are_here(has_heard, now);
+bool SetpointIntake::has_all_awaited(const AwaitedWords::HasReceived& has_received, core::Step next,
+                                     Clock::time_point now) {
+  const bool all_received = awaited_.are_here(has_received, now);
   for (const core::ProgramWord& word : awaited_.take_given_up()) {
-    ++unheard_;
+    ++not_taken_;
     spdlog::warn("a step names setpoints {} of program {:x}, which have not come: state {} is computed without them",
                  word.number, word.program, next);
   }

@@ -38,15 +38,15 @@ class SetpointIntake {
   /// No state is computed until the setpoints that this step command names have been received.
   void await(const messages::RunCommand& step, Clock::time_point now) { awaited_.add(step, now); }
   /// True if all awaited setpoints have been received or given up. `next`: the state that is to be computed.
-  bool has_all_awaited(const AwaitedWords::HasHeard& has_heard, core::Step next, Clock::time_point now);
+  bool has_all_awaited(const AwaitedWords::HasReceived& has_received, core::Step next, Clock::time_point now);
 
   const SetpointCounts& counts() const { return counts_; }
 
  private:
   AwaitedWords awaited_;
   SetpointCounts counts_;
-  std::uint64_t unheard_ = 0, unbearable_ = 0;
-  bool says_late_ = false, says_refused_ = false;  ///< the message about them has been logged
+  std::uint64_t not_taken_ = 0, unbearable_ = 0;
+  bool late_logged_ = false, refused_logged_ = false;  ///< the message about them has been logged
 };
 
 }  // namespace aurasim::process

@@ -71,7 +71,7 @@ dds::Settings with_keys(dds::Settings settings, const config::Launch& launch,
                         const std::optional<security::Member>& member) {
   if (!member) return settings;
   settings.keys = with_bad_keys_told([&] { return security::KeyStore(launch.dds.security).files_of(member->name); });
-  settings.tell_refusal = [](const std::string& what) { spdlog::warn("{}", what); };
+  settings.report_refusal = [](const std::string& what) { spdlog::warn("{}", what); };
   return settings;
 }
 

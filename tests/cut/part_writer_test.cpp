@@ -80,7 +80,7 @@ class PartWriters : public testing::Test {
       for (std::uint32_t to = 0; to < kRegions; ++to) {
         for (std::uint32_t from = 0; from < kRegions; ++from) {
           const SaveLedger& said = nodes_[from]->ledger();
-          nodes_[to]->hear(core::RegionId{from}, said.saved(), said.not_saved());
+          nodes_[to]->receive(core::RegionId{from}, said.saved(), said.not_saved());
         }
       }
     }
@@ -175,8 +175,8 @@ TEST_F(PartWriters, WhoHasNotHeardOfTheLastPartKeepsBoth) {
   for (auto& node : nodes_) node->progress(now_);
   const SaveLedger last = nodes_[2]->ledger();
   start_node(2);
-  for (std::uint32_t from : {1U, 3U}) nodes_[0]->hear(core::RegionId{from}, nodes_[from]->ledger().saved(), {});
-  nodes_[0]->hear(core::RegionId{2}, last.saved(), {});
+  for (std::uint32_t from : {1U, 3U}) nodes_[0]->receive(core::RegionId{from}, nodes_[from]->ledger().saved(), {});
+  nodes_[0]->receive(core::RegionId{2}, last.saved(), {});
   nodes_[0]->progress(now_);
   EXPECT_EQ(files(0).size(), 1U);
   let_all_hear();

@@ -23,8 +23,8 @@ class Ledger : public testing::Test {
 
 TEST_F(Ledger, ASaveIsWholeOnceAllRegionsHaveTheirParts) {
   ledger_.begin(7);
-  ledger_.hear(kOne, {5, 7}, {});
-  ledger_.hear(kTwo, {7}, {});
+  ledger_.receive(kOne, {5, 7}, {});
+  ledger_.receive(kTwo, {7}, {});
   EXPECT_THAT(outcomes(), IsEmpty());
   ledger_.note_own(7, true);
   const auto all = outcomes();
@@ -39,30 +39,30 @@ TEST_F(Ledger, ASaveIsWholeOnceAllRegionsHaveTheirParts) {
 TEST_F(Ledger, WhoHasWrittenAndDiedHasWritten) {
   ledger_.begin(7);
   ledger_.note_own(7, true);
-  ledger_.hear(kOne, {7}, {});
-  ledger_.hear(kOne, {}, {});
-  ledger_.hear(kTwo, {7}, {});
+  ledger_.receive(kOne, {7}, {});
+  ledger_.receive(kOne, {}, {});
+  ledger_.receive(kTwo, {7}, {});
   EXPECT_EQ(outcomes().size(), 1U);
 }
 
 TEST_F(Ledger, WhoDiesBeforeItHasWrittenLeavesTheSaveOpen) {
   ledger_.begin(7);
   ledger_.note_own(7, true);
-  ledger_.hear(kOne, {7}, {});
+  ledger_.receive(kOne, {7}, {});
   now_ += 1h;
   EXPECT_THAT(outcomes(), IsEmpty());
   ledger_.forget(7);
-  ledger_.hear(kTwo, {7}, {});
+  ledger_.receive(kTwo, {7}, {});
   EXPECT_THAT(outcomes(), IsEmpty());
 }
 
 TEST_F(Ledger, ASaveFailsWithTheNamesOfAllThatCouldNotWrite) {
   ledger_.begin(7);
-  ledger_.hear(kTwo, {}, {7});
+  ledger_.receive(kTwo, {}, {7});
   now_ += 1h;
   EXPECT_THAT(outcomes(), IsEmpty()) << "its own part is being written";
   ledger_.note_own(7, false);
-  ledger_.hear(kOne, {7}, {});
+  ledger_.receive(kOne, {7}, {});
   const auto all = outcomes();
   ASSERT_EQ(all.size(), 1U);
   EXPECT_EQ(all[0].fate, SaveFate::kFailed);
@@ -73,7 +73,7 @@ TEST_F(Ledger, ASaveFailsWithTheNamesOfAllThatCouldNotWrite) {
 TEST_F(Ledger, AFailedSaveDoesNotWaitForWhoDoesNotSpeak) {
   ledger_.begin(7);
   ledger_.note_own(7, true);
-  ledger_.hear(kOne, {}, {7});
+  ledger_.receive(kOne, {}, {7});
   EXPECT_THAT(outcomes(), IsEmpty());
   now_ += 3s;
   const auto all = outcomes();

@@ -27,7 +27,7 @@ class SetpointBus : public ::testing::Test {
   bool is_heard(const core::ProgramWord& word) {
     return holds_in_time([&] {
       for (core::Setpoints& heard : node_.take(kGeneration)) taken_.push_back(std::move(heard));
-      return node_.has_heard(word);
+      return node_.has_received(word);
     });
   }
   static core::Setpoints forces_on(std::size_t bodies, core::Generation generation = kGeneration) {
@@ -50,10 +50,10 @@ TEST_F(SetpointBus, AWordIsHeardOnceTheMessageHasCome) {
   program_.send(forces_on(1));
   const core::ProgramWord word = program_.last_word();
   EXPECT_EQ(word.number, 1U);
-  EXPECT_FALSE(node_.has_heard(word)) << "nothing is taken before take()";
+  EXPECT_FALSE(node_.has_received(word)) << "nothing is taken before take()";
   EXPECT_TRUE(is_heard(word));
-  EXPECT_FALSE(node_.has_heard({word.program, word.number + 1}));
-  EXPECT_FALSE(node_.has_heard({word.program + 1, word.number}));
+  EXPECT_FALSE(node_.has_received({word.program, word.number + 1}));
+  EXPECT_FALSE(node_.has_received({word.program + 1, word.number}));
 }
 
 TEST_F(SetpointBus, ALargeMessageIsOneWord) {

@@ -295,10 +295,10 @@ TEST_F(AStranger, BringsNoMeshUnderAnotherOnesName) {
 TEST_F(AStranger, DoesNotKillByItsWord) {
   messages::RunCommand lost = command_of(messages::RunCommandKind::kLost);
   lost.process = 101;
-  zero_bus_.hear_of_death(lost);
+  zero_bus_.receive_death(lost);
   EXPECT_FALSE(zero_bus_.statuses().at(RegionId{1}).lost) << "its process is there";
   lost.is_of_itself = true;
-  zero_bus_.hear_of_death(lost);
+  zero_bus_.receive_death(lost);
   EXPECT_TRUE(zero_bus_.statuses().at(RegionId{1}).lost);
 }
 
@@ -309,7 +309,7 @@ TEST_F(AStranger, IsBelievedOfADeathOnceTheProcessIsGone) {
   ASSERT_TRUE(holds_in_time([&] { return zero_bus_.statuses().at(RegionId{1}).status.pid == gone.pid; }));
   messages::RunCommand lost = command_of(messages::RunCommandKind::kLost);
   lost.process = 101;
-  zero_bus_.hear_of_death(lost);
+  zero_bus_.receive_death(lost);
   EXPECT_TRUE(zero_bus_.statuses().at(RegionId{1}).lost);
 }
 

@@ -41,9 +41,9 @@ TEST_F(NodeStatusTest, IsDueAtOnceWhereOthersWaitForIt) {
 
 TEST_F(NodeStatusTest, IsDueAtOnceWhenOtherRegionsAreUnheard) {
   publish(messages::NodeState::kRecovering, kBegin);
-  status_.note_unheard({});
+  status_.note_unreachable({});
   EXPECT_FALSE(status_.period_is_over(kBegin)) << "as before";
-  status_.note_unheard({RegionId{1}});
+  status_.note_unreachable({RegionId{1}});
   EXPECT_TRUE(status_.period_is_over(kBegin));
   EXPECT_EQ(status_.content().dead, std::vector<RegionId>{RegionId{1}});
 }

@@ -45,7 +45,7 @@ TEST(ObserverPace, WhoKeepsUpAgainIsToldMore) {
   for (int i = 0; i < 20; ++i) pace.note_too_slow();
   EXPECT_TRUE(pace.is_for(1024, 1)) << "it is told something, however slow it is";
   int taken = 0;
-  for (; !pace.is_for(1, 1); ++taken) pace.note_told();
+  for (; !pace.is_for(1, 1); ++taken) pace.note_sent();
   EXPECT_EQ(taken, 320) << "32 for each doubling";
 }
 

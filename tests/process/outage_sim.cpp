@@ -243,7 +243,7 @@ void OutageSim::agree(Process& process) {
       now_);
   if (acts.replaced_in && process.knows_world) return give_way(process);
   if (acts.meets_anew) return meet_anew(process);
-  process.status.dead = unheard_regions(nodes, process.region, hosts_);
+  process.status.dead = unreachable_regions(nodes, process.region, hosts_);
   for (const core::RegionId region : acts.stand_ins) start_stand_in(process.host, region);
   if (may_go_on && process.knows_world) lead(process, nodes);
 }

@@ -54,7 +54,7 @@ class Node {
  public:
   explicit Node(const KeyFiles& keys) {
     Settings settings = settings_for(keys);
-    settings.tell_refusal = [this](const std::string& text) {
+    settings.report_refusal = [this](const std::string& text) {
       const std::lock_guard lock(mutex_);
       refusals_.push_back(text);
     };
