@@ -74,7 +74,7 @@ void Agent::serve() {
       }
     }
   } catch (const client::ConnectionLost&) {
-    spdlog::info("the client has gone");
+    spdlog::info("the client has closed its connection: the agent ends");
   }
   if (run_ && run_->launched() != nullptr) run_->launched()->ask_to_stop();
 }
@@ -136,7 +136,7 @@ Message Agent::answer_of_run(const std::string& what, const json& asked, const P
     return {json::object(), {}};
   }
   if (what == "nodes") return {nodes_json(run().nodes(patience)), {}};
-  throw Problem(Kind::kRefused, "nothing is called '" + what + "'");
+  throw Problem(Kind::kRefused, "the agent knows no request '" + what + "'");
 }
 
 /// One ask, of any kind; or several commands at once, which are sent together.

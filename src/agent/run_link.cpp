@@ -92,13 +92,13 @@ core::Step RunLink::control(core::Setpoints setpoints, const Patience& patience)
 /// In a paused run this waits until all nodes have the interest, so that no state computed next is left out.
 std::uint64_t RunLink::observe(AskedInterest asked, const Patience& patience) {
   if (observers_.size() >= kMostObservers) {
-    throw Problem(Kind::kRefused, fmt::format("observers: allowed: {} at a time", kMostObservers));
+    throw Problem(Kind::kRefused, fmt::format("observers: found one more, allowed: {} at a time", kMostObservers));
   }
   Observer& added =
       *(observers_[++last_observer_] = std::make_unique<Observer>(participant_, watch_, std::move(asked)));
   const auto end = Clock::now() + kPatienceWithObservation;
   while (stands() && !added.has_next() && Clock::now() < end) {
-    patience.check("not all nodes have told the first state");
+    patience.check("not all nodes have published the first state");
     added.wait(kRound);
     turn(0ms);
   }
@@ -125,7 +125,7 @@ void RunLink::look_for_the_end() {
   } else if (!alone_since_) {
     alone_since_ = Clock::now();
   } else if (Clock::now() > *alone_since_ + setup::kPatienceWithSilence) {
-    throw Problem(Kind::kEnded, "the run has ended: no node of it is there any more");
+    throw Problem(Kind::kEnded, "the run has ended: none of its nodes is alive any more");
   }
 }
 
@@ -224,7 +224,7 @@ void RunLink::wait_until_it_stands(const Patience& patience) {
     return is_news && seen.is_live() && seen.status.state == messages::NodeState::kRunning && !seen.status.holds_at;
   };
   while (!is_known_to_stand()) {
-    patience.check("the run is paused, and has not come to the state in which it is to stand");
+    patience.check("the run is paused, and has not reached the state in which it is to stop");
     if (std::ranges::any_of(watch_.nodes(), [&](const auto& node) { return goes_on(node.second); })) {
       throw Problem(Kind::kRefused, "steps are for a run that is paused, and this one runs: pause it first");
     }
@@ -242,7 +242,7 @@ void RunLink::steer(Steer kind, const Patience& patience) {
   const auto is_seen = [&] { return kind != Steer::kReset || farthest().generation > command.generation; };
   wait_until([&] { return (steering_.has_taken_effect(command) && is_seen()) || has_ended(); }, patience,
              fmt::format("{} was sent, but not every node shows its effect", messages::name_of(kind)));
-  if (stood) wait_until([this] { return stands(); }, patience, "the run has begun anew, and does not stand yet");
+  if (stood) wait_until([this] { return stands(); }, patience, "the run has begun anew, and is not paused yet");
   has_met_ = true;
 }
 

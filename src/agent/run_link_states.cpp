@@ -110,7 +110,7 @@ bool RunLink::collect(StandingState& state, const Patience& patience) {
   watch_standing_states();
   const auto end = Clock::now() + kMoment + kPatienceWithAReader;
   while (!take_standing(state)) {
-    patience.check("not all regions have told the state in which they stand");
+    patience.check("not all regions have published the state in which the run is paused");
     if (Clock::now() > end) return stands() && collect_key_frames(state, patience);
     if (!is_known_to_stand()) return false;
     standing_->wait(kRound);

@@ -30,7 +30,7 @@ class Arrays {
 
   template <class T>
   std::vector<T> take(std::size_t count) {
-    if (count > (bytes_.size() - at_) / sizeof(T)) refuse("the message is shorter than it says");
+    if (count > (bytes_.size() - at_) / sizeof(T)) refuse("the setpoint message is shorter than its head states");
     std::vector<T> values(count);
     std::memcpy(values.data(), bytes_.data() + at_, count * sizeof(T));
     at_ += count * sizeof(T);
@@ -124,15 +124,15 @@ void take_statics(const json& head, const config::Launch& launch, core::Setpoint
   }
   for (const json& of : list) {
     if (!launch.physics.looks_once()) {
-      refuse(fmt::format("the solver {} knows no statics that move", launch.physics.solver));
+      refuse(fmt::format("the solver {} cannot move statics", launch.physics.solver));
     }
     core::StaticSetpoint& wanted = to.statics.emplace_back();
     wanted.id = steering::static_of(steering::member(of, "static"), launch.scene, "static");
     wanted.to = {steering::vector_of(of, "p"), steering::rotation_of(of, "q")};
     wanted.states = of.value("states", core::Step{1});
     if (!(wanted.to.p_WB.cwiseAbs().maxCoeff() <= core::limits::kFarthestPlace_m)) {
-      refuse(
-          fmt::format("statics: a place too far out, allowed: {:g} m along each axis", core::limits::kFarthestPlace_m));
+      refuse(fmt::format("statics: found a position too far out, allowed: {:g} m along each axis",
+                         core::limits::kFarthestPlace_m));
     }
     if (wanted.states < 1 || wanted.states > core::limits::kMostStepsAhead) {
       refuse(fmt::format("statics: found {} states, allowed: 1 to {}", wanted.states, core::limits::kMostStepsAhead));

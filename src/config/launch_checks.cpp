@@ -54,7 +54,7 @@ void read_ros2(const Field& ros2, Launch& launch) {
     launch.ros2.on = word->name == "on";
   }
   if (launch.ros2.on && !launch.dds.security.empty()) {
-    ros2.complain("ROS 2 is told everything in the clear, allowed: off beside dds.security");
+    ros2.complain("ROS 2 gets everything unencrypted, allowed: off beside dds.security");
   }
   for (const std::string& name : launch.ros2.cmd_vel) {
     if (!is_ros_name(name)) {

@@ -173,10 +173,10 @@ const KeysOf<Dds>& dds_keys() {
 }
 
 const KeysOf<Observe>& observe_keys() {
-  static const KeysOf<Observe> keys("observe", "What nodes tell those who watch.",
+  static const KeysOf<Observe> keys("observe", "What nodes publish for observers.",
                                     {
                                         optional("tick_hz", &Observe::tick_hz, number(Range::from_to(1e-3, 1000), "Hz"),
-                                                 "how often nodes tell the viewer what has changed"),
+                                                 "how often nodes publish changes for the viewer"),
                                     });
   return keys;
 }
@@ -207,7 +207,7 @@ const KeysOf<Control>& control_keys() {
 
 const KeysOf<Ros2>& ros2_keys() {
   static const KeysOf<Ros2> keys(
-      "ros2", "What nodes say to ROS 2, and hear of it, by DDS alone (docs/ros2.md). `{}` is on.",
+      "ros2", "What nodes publish to ROS 2 and receive from it, by DDS alone (docs/ros2.md). `{}` is on.",
       {
           optional("domain", &Ros2::domain, integer(0, 232), "ROS_DOMAIN_ID of those who listen")
               .otherwise("the run's"),
@@ -294,9 +294,11 @@ const KeysOf<Launch>& launch_keys() {
           optional("physics", &Launch::physics, physics_keys, "Bullet, and how accurate it is"),
           optional("dds", map(dds_keys), "how nodes find each other"),
           optional("survival", &Launch::survival, survival_keys, "what happens when a node dies"),
-          optional("observe", &Launch::observe, observe_keys, "what nodes tell those who watch"),
+          optional("observe", &Launch::observe, observe_keys, "what nodes publish for observers"),
           optional("control", map(control_keys), "programs that steer bodies and joints"),
-          optional("ros2", map(ros2_keys).or_else(words({"on", "off"})), "what ROS 2 is told and may say").usual("off"),
+          optional("ros2", map(ros2_keys).or_else(words({"on", "off"})),
+                   "what nodes publish to ROS 2 and receive from it")
+              .usual("off"),
           optional("overseer", map(overseer_keys), "the viewer's server"),
       });
   return keys;

@@ -255,7 +255,7 @@ std::vector<std::string> DdsTransport::Impl::missing_neighbours(std::vector<Regi
     }
     regions.push_back(link->region);
     texts.push_back(missing.size() == kEndpointsOfALink
-                        ? fmt::format("region {} (nothing heard of it)", value_of(link->region))
+                        ? fmt::format("region {} (nothing received from it)", value_of(link->region))
                         : fmt::format("region {} ({})", value_of(link->region), fmt::join(missing, ", ")));
   }
   return texts;

@@ -195,10 +195,10 @@ void Writer::say_who_does_not_read() {
   for (const Guid& reader : watch_.readers()) {
     if (!domain_.speakers().is_node(reader)) strangers.insert(text_of(reader.guidPrefix));
   }
-  domain_.speakers().say(fmt::format(
-      "somebody listens to {} and has acknowledged nothing of {} samples: older ones are dropped. Readers of "
-      "processes that are no nodes: [{}]",
-      writer_->get_topic()->get_name(), unread_, fmt::join(strangers, ", ")));
+  domain_.speakers().say(
+      fmt::format("a reader of topic {} has acknowledged none of {} samples: older ones are dropped. Readers of "
+                  "processes that are no nodes: [{}]",
+                  writer_->get_topic()->get_name(), unread_, fmt::join(strangers, ", ")));
 }
 
 bool Writer::reaches(core::RegionId region) const {
@@ -297,7 +297,7 @@ void Reader::refuse_from(const Origin& origin, messages::WireError error) {
   const bool is_no_message = error == messages::WireError::kMalformed || error == messages::WireError::kLength ||
                              error == messages::WireError::kTooLarge || error == messages::WireError::kEnum;
   if (!is_no_message) return;
-  refuse_from(origin, fmt::format("it sends what cannot be ({})", name_of(error)));
+  refuse_from(origin, fmt::format("it sends invalid data ({})", name_of(error)));
 }
 
 void Reader::refuse_from(const Origin& origin, const std::string& what) {

@@ -62,7 +62,7 @@ bool NodeRoster::is_region(RegionId region) const {
 std::string NodeRoster::problem_with(const messages::Status& fresh, const Origin& origin) const {
   const std::uint32_t number = value_of(fresh.region);
   if (!speakers_.is_at_home(origin.writer, fresh.region)) {
-    return fmt::format("it speaks of region {} where others do", number);
+    return fmt::format("it publishes a status of region {} in the partition of another", number);
   }
   const auto known = statuses_.find(fresh.region);
   const bool has_node = known != statuses_.end() && rank_of(known->second, true) == kIsNode &&

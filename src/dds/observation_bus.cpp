@@ -160,7 +160,7 @@ struct ObserverEndpoint::Impl {
 
   void say_what_is_wanted() {
     if (interests.send_newest(*wanted, std::uint64_t{0}) == WriteResult::kFailed) {
-      throw DdsError("cannot say what is wanted: topic interest does not take it");
+      throw DdsError("cannot send the interest: topic interest does not take it");
     }
   }
 

@@ -154,7 +154,8 @@ struct Ros2Bus::Impl {
       : profiles(settings.dds.profiles), participant(join(settings.dds, profiles, guard)) {
     publisher = participant->create_publisher(eprosima::fastdds::dds::PUBLISHER_QOS_DEFAULT);
     subscriber = participant->create_subscriber(eprosima::fastdds::dds::SUBSCRIBER_QOS_DEFAULT);
-    if (publisher == nullptr || subscriber == nullptr) throw DdsError("cannot speak in ROS's DDS domain");
+    if (publisher == nullptr || subscriber == nullptr)
+      throw DdsError("cannot create a publisher and a subscriber in ROS's DDS domain (ros2.domain)");
     tell("/clock", kRos2Clock, "ros2_clock_writer", clock);
     tell("/tf", kRos2Tf, "ros2_tf_writer", tf);
     tell("/joint_states", kRos2JointState, "ros2_joint_states_writer", joints);

@@ -74,7 +74,7 @@ std::string printable(const std::string& text) {
 
 std::string claim_in(const ParticipantDiscoveryInfo& info) {
   for (const auto& property : info.info.identity_token_.properties()) {
-    if (property.name() == "dds.cert.sn") return "who says to be " + printable(property.value());
+    if (property.name() == "dds.cert.sn") return "which claims to be " + printable(property.value());
   }
   return "without keys";
 }

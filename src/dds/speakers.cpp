@@ -138,7 +138,7 @@ void Speakers::ration(const Guid& writer, const std::string& what) {
   const std::lock_guard lock(mutex_);
   ++refused_;
   if (rationed_.size() >= kMostProcesses || !rationed_.emplace(writer.guidPrefix, what).second) return;
-  say_locked(fmt::format("process {} says more than it is given, and what is over is dropped: {}",
+  say_locked(fmt::format("process {} sends more than it is allowed, and the rest is dropped: {}",
                          text_of(writer.guidPrefix), what));
 }
 

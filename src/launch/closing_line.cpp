@@ -28,7 +28,9 @@ std::string closing_line(const std::map<core::RegionId, messages::SeenStatus>& s
     missed += status.missed_collisions;
   }
   if (unknown.size() == regions) {
-    return fmt::format("the run has broken off: no node has said that it came to its end (--report DIR records it)\n");
+    return fmt::format(
+        "the run has broken off: no node has published that it came to its end. --report DIR keeps the records of each "
+        "node\n");
   }
   const std::string lacking =
       unknown.empty() ? ""

@@ -239,7 +239,7 @@ void Launcher::note_exit(Child& child, int status) {
   child.died = command_line::is_death(child.exit_code);
   if (child.died) {
     spdlog::error("the node of region {} died (exit code {}){}", core::value_of(child.region), child.exit_code,
-                  has_begun_ ? "" : " before the run had begun: the others are ended");
+                  has_begun_ ? "" : " before the run had begun: the launcher ends the other nodes");
     tell_lost(child);
     if (has_begun_ && launch_.survival.on_death == config::OnDeath::kStop) break_off("survival.on_death is stop");
   }
@@ -377,7 +377,7 @@ command_line::ExitCode Launcher::conclude() {
     return code;
   }
   if (code == command_line::ExitCode::kRefused || !records::has_records(*options_.report)) {
-    spdlog::warn("no report: the run has not begun");
+    spdlog::warn("there is no report, because the run has not begun");
     records::clear_report(*options_.report);
     return code;
   }

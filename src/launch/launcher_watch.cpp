@@ -26,7 +26,7 @@ void Launcher::end_hung_nodes() {
     const auto silence = life_.silence_of(child.pid, now);
     if (!silence) continue;
     child.hung = child.pid;
-    spdlog::error("the node of region {} has shown no life for {:.1f} s: its process {} is ended",
+    spdlog::error("the node of region {} has shown no life for {:.1f} s: the launcher ends its process {}",
                   core::value_of(child.region), std::chrono::duration<double>(*silence).count(), child.pid);
     ::kill(child.pid, SIGKILL);
   }

@@ -39,7 +39,8 @@ command_line::ExitCode merge_and_print(const std::filesystem::path& folder, cons
                   region.why);
   }
   for (const std::string& file : accounts.not_merged) {
-    spdlog::error("no room for {}; the rows are in {}", (folder / file).string(), (folder / "region_*").string());
+    spdlog::error("the disk has no room for {}: the rows stay in {}", (folder / file).string(),
+                  (folder / "region_*").string());
   }
   const bool complete = accounts.incomplete.empty() && accounts.not_merged.empty();
   return accounts.lost + accounts.duplicated == 0 && complete ? so_far : command_line::ExitCode::kFailed;

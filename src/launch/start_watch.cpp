@@ -22,7 +22,7 @@ std::optional<std::string> StartWatch::problem(const std::map<core::RegionId, me
   }
   if (silent.empty()) return std::nullopt;
   return fmt::format(
-      "the nodes of regions [{}] have said nothing for {} s, and the run has not begun: it is ended. "
+      "the nodes of regions [{}] have published nothing for {} s, and the run has not begun: the launcher ends it. "
       "--start-time-out gives them more time",
       fmt::join(silent, ", "), time_out_.count());
 }

@@ -126,7 +126,7 @@ void ChangingPhase::wait_for_all_nodes() {
     if (computes_for_long(run_.control().statuses(), run_.options.region, Clock::now()))
       deadline = Clock::now() + kPatienceWithOthers;
     if (Clock::now() > deadline || host::stop_requested()) {
-      throw ChangeFailed(fmt::format("step {}: not every node has come to the change", run_.node->current_step()));
+      throw ChangeFailed(fmt::format("step {}: not every node has reached the change", run_.node->current_step()));
     }
     run_.control().wait(5ms);
   }
@@ -139,7 +139,7 @@ void ChangingPhase::settle_all() {
   while (!run_.node->ready_to_settle()) {
     run_.look_for_deaths();
     if (Clock::now() > deadline || host::stop_requested()) {
-      throw ChangeFailed("new regions: a neighbour has not come to this state");
+      throw ChangeFailed("new regions: a neighbour has not reached this state");
     }
     run_.transport().wait_for_arrival(5ms);
   }
@@ -152,8 +152,9 @@ void ChangingPhase::connect_for_change(const dds::TransportSettings& settings) {
   const auto deadline = Clock::now() + kPatienceWithOthers;
   run_.begin_to_connect(settings);
   while (const char* const missing = run_.go_on_connecting()) {
-    if (host::stop_requested()) throw ChangeFailed("told to stop while the run changes");
-    if (Clock::now() > deadline) throw ChangeFailed(fmt::format("a change has waited in vain for {}", missing));
+    if (host::stop_requested()) throw ChangeFailed("the process was asked to stop while the run changes");
+    if (Clock::now() > deadline)
+      throw ChangeFailed(fmt::format("the change of the run has waited in vain for {}", missing));
     if (run_.phase == NodePhase::kWaiting) run_.publish();  // before, others still wait for the last state's status
     executor_.execute_commands();
     run_.look_for_deaths();

@@ -55,7 +55,8 @@ void ClientService::step_back(const RunView& view) {
   const cut::SavedState saved = cut::newest_saved_until(run_.options.saves, run_.saving.saved_by(), latest);
   if (restore && restore->at_step >= saved.step) return send_back(*restore, *back);
   if (saved.step >= 0) return run_.endpoints.commands().load_instead(*back, saved.name, *run_.node, view);
-  run_.endpoints.commands().refuse(back->request, fmt::format("no state until {} is kept", latest));
+  run_.endpoints.commands().refuse(
+      back->request, fmt::format("the run keeps no state up to state {}, so it cannot step back", latest));
 }
 
 /// Sends a restore as after a death. No node has died, so the new generation begins at once, and is paused if this one

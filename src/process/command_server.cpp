@@ -146,10 +146,11 @@ void CommandServer::wait_for_mesh(Asked asked, const core::MeshRef& mesh, const 
     lacking.push_back(core::value_of(region_));
   }
   refuse(asked.command.request,
-         fmt::format("after {} s the nodes of regions [{}] have not got the mesh; was it sent to /api/shapes? A node "
-                     "keeps {} meshes and {} MiB of one client",
-                     kPatienceForMesh.count(), fmt::join(lacking, ", "), kMeshes.meshes_of_source,
-                     kMeshes.bytes_of_source >> 20U));
+         fmt::format(
+             "after {} s the nodes of regions [{}] have not received the mesh: send it to /api/shapes first. A node "
+             "keeps {} meshes and {} MiB of one client",
+             kPatienceForMesh.count(), fmt::join(lacking, ", "), kMeshes.meshes_of_source,
+             kMeshes.bytes_of_source >> 20U));
 }
 
 void CommandServer::refuse(std::uint64_t request, std::string why) {
@@ -222,8 +223,8 @@ void CommandServer::decide(const core::Command& command, node::Node& node, const
   const bool has_text = std::holds_alternative<core::Save>(command.ask);
   decided_ += has_text ? kTextWeighs : 1;
   if (decided_ > kMostInAState) {
-    return refuse(command.request,
-                  fmt::format("too many commands in state {}: ask again in the next", node.current_step()));
+    return refuse(command.request, fmt::format("too many commands in state {}: send this one again in the next state",
+                                               node.current_step()));
   }
   if (const auto* load = std::get_if<core::Load>(&command.ask); load != nullptr && load->file.empty()) {
     wanted_back_ = command;

@@ -78,7 +78,7 @@ std::string who_does_not_wait(const SeenNodes& nodes, std::size_t regions) {
       busy.push_back(r);
     }
   }
-  return fmt::format("regions that have not reported: [{}]; that still look for their neighbours: [{}]",
+  return fmt::format("regions that have not reported: [{}]; regions that still look for their neighbours: [{}]",
                      fmt::join(absent, ", "), fmt::join(busy, ", "));
 }
 

@@ -67,8 +67,8 @@ bool MeetingPhase::meet_neighbours() {
       } catch (const dds::NeighboursMissing& missing) {
         const bool is_alone = !receives_from_others();
         run_.refuse(fmt::format(
-            "after {} s, {} of them with nothing new: {}{}", whole_seconds(Clock::now() - began),
-            whole_seconds(patience.waited(Clock::now())), missing.what(),
+            "the node has not met its neighbours in {} s, and for {} s there was nothing new: {}{}",
+            whole_seconds(Clock::now() - began), whole_seconds(patience.waited(Clock::now())), missing.what(),
             is_alone ? setup::word_about_keys(run_.endpoints.participant().peers_by_keys(), run_.launch) : ""));
         return false;
       }

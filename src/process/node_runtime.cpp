@@ -166,7 +166,7 @@ void NodeRuntime::give_way(core::Step step) {
 /// them.
 void NodeRuntime::throw_away_after(core::Step step) {
   if (node->current_step() > step) {
-    spdlog::warn("region {}: states {} to {} of this process are thrown away", core::value_of(options.region), step + 1,
+    spdlog::warn("region {}: states {} to {} of this process are discarded", core::value_of(options.region), step + 1,
                  node->current_step());
   }
   if (records.is_replaced()) return records.close();

@@ -103,8 +103,10 @@ void RecoveringPhase::execute(const RecoveryActs& acts) {
 
 /// Leaves DDS and joins it again as a new participant, with the world that this node has (Recovery::meets_anew).
 void RecoveringPhase::join_anew() {
-  spdlog::warn("region {}: some others do not hear this node, or it hears too few of them: it joins DDS anew",
-               core::value_of(run_.options.region));
+  spdlog::warn(
+      "region {}: some other nodes do not receive from this node, or it receives from too few of them: it leaves DDS "
+      "and joins it again",
+      core::value_of(run_.options.region));
   run_.endpoints.join_anew(run_.transport_settings());
   if (run_.node) run_.publish_map(run_.generation, run_.first_step());
   run_.publish();
@@ -145,8 +147,8 @@ void RecoveringPhase::lead_recovery() {
 bool RecoveringPhase::may_begin_again(core::Generation era) {
   if (run_.recovery.may_begin_again(era)) return true;
   if (run_.schedule.has_reset()) {
-    spdlog::warn("region {}: all begin again from state {}, as they were told to", core::value_of(run_.options.region),
-                 run_.first_step());
+    spdlog::warn("region {}: all nodes begin again from state {}, because a reset command asks for it",
+                 core::value_of(run_.options.region), run_.first_step());
     run_.schedule.take_reset();
     return true;
   }
@@ -199,7 +201,7 @@ void RecoveringPhase::take_map_of(const messages::RunCommand& restore) {
 }
 
 void RecoveringPhase::wait_in_recovery(Clock::time_point deadline, const char* for_what) {
-  if (host::stop_requested()) throw SomebodyDied("told to stop");
+  if (host::stop_requested()) throw SomebodyDied("the process was asked to stop");
   if (run_.fence.closed()) throw SomebodyDied(run_.fence.reason());
   if (run_.restoration.is_broken_off()) throw SomebodyDied(run_.restoration.why_broken_off());
   if (Clock::now() > deadline) throw SomebodyDied(fmt::format("waited in vain for {}", for_what));

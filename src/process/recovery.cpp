@@ -60,11 +60,12 @@ std::optional<core::Step> newest_complete(const SeenNodes& nodes, core::Generati
 }
 
 std::optional<std::string> why_stand(const SeenNodes& nodes, const OwnWorld& own) {
-  if (own.restore != nullptr && own.restore->generation > own.current) return "all go back to an earlier state";
+  if (own.restore != nullptr && own.restore->generation > own.current) return "all nodes go back to an earlier state";
   if (own.is_going_back && own.restore->region != own.region) {
     const auto lead = nodes.find(own.restore->region);
     const std::uint64_t process = own.restore->members.at(core::value_of(own.restore->region)).process;
-    if (lead != nodes.end() && lead->second.status.process != process) return "the node that led all back has left";
+    if (lead != nodes.end() && lead->second.status.process != process)
+      return "the node that sent the restore command has left";
   }
   for (const auto& [region, seen] : nodes) {
     const auto is_member = [&, number = core::value_of(region)] {
@@ -76,7 +77,7 @@ std::optional<std::string> why_stand(const SeenNodes& nodes, const OwnWorld& own
     const NodeState state = seen.status.state;
     const std::uint32_t number = core::value_of(region);
     if (!seen.has_ended() && std::ranges::find(own.silent, region) != own.silent.end()) {
-      return fmt::format("region {} is silent, or has said what cannot be", number);
+      return fmt::format("the node of region {} is silent, or has published an invalid message", number);
     }
     if (seen.lost && !seen.has_ended()) return fmt::format("the node of region {} has died", number);
     if (!seen.lost && state == NodeState::kFailed) {
@@ -88,7 +89,7 @@ std::optional<std::string> why_stand(const SeenNodes& nodes, const OwnWorld& own
       return fmt::format("the node of region {} has left", number);
     }
     if (!seen.lost && stands(state) && seen.status.generation >= own.current) {
-      return fmt::format("region {} says that a node has died", number);
+      return fmt::format("the node of region {} reports that a node has died", number);
     }
   }
   return std::nullopt;
@@ -106,15 +107,16 @@ RestoreMeaning meaning_of(const messages::RunCommand& restore, core::RegionId re
 std::string what_recovery_waits_for(bool is_cut_off, const std::string& question,
                                     const std::vector<core::RegionId>& vacant,
                                     const std::vector<core::RegionId>& unreachable) {
-  if (is_cut_off) return "hears too few of the others, and waits for them";
+  if (is_cut_off) return "receives from too few of the other nodes, and waits for them";
   if (!question.empty()) return question;
   if (!vacant.empty()) {
-    return fmt::format("waits for whoever takes over regions [{}]", fmt::join(numbers_of(vacant), ", "));
+    return fmt::format("waits for processes that take over regions [{}]", fmt::join(numbers_of(vacant), ", "));
   }
   if (!unreachable.empty()) {
-    return fmt::format("does not hear regions [{}], which others hear", fmt::join(numbers_of(unreachable), ", "));
+    return fmt::format("does not receive from regions [{}], from which other nodes receive",
+                       fmt::join(numbers_of(unreachable), ", "));
   }
-  return "waits until all others stand";
+  return "waits until all other nodes have stopped computing";
 }
 
 std::string nobody_takes_over(const std::vector<core::RegionId>& vacant) {

@@ -35,7 +35,7 @@ void RegionChange::end_census(const node::Node& node) {
 }
 
 std::string RegionChange::missing_in_census() const {
-  return fmt::format("new regions: regions {} have not published what they host", census_->silent());
+  return fmt::format("new regions: regions {} have not published the bodies that they host", census_->silent());
 }
 
 dds::TransportSettings RegionChange::transport_to_all() const {

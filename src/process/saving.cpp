@@ -88,8 +88,8 @@ void Saving::keep_checkpoints(Checkpoints& checkpoints, records::Recorder* recor
   for (const core::RegionId keeper : checkpoints.keepers()) keepers.push_back(core::value_of(keeper));
   report(
       fmt::format("one of regions [{}], which keep copies of this region, takes longer to receive a part of the world "
-                  "than from one checkpoint to the next: after a death all may have to go back farther "
-                  "(survival.checkpoint)",
+                  "than from one checkpoint to the next: after a death all nodes may have to go back farther. A "
+                  "longer survival.checkpoint gives it time",
                   fmt::join(keepers, ", ")));
 }
 
@@ -98,7 +98,8 @@ void Saving::save_as_it_stands(node::Node& node, CommandServer& server) {
   std::erase_if(standing_, [&](const StandingSave& save) {
     if (save.step != node.current_step()) {
       server.refuse(save.request,
-                    fmt::format("the run has gone on from state {} before it was saved there: ask again", save.step));
+                    fmt::format("the run has gone on from state {} before it was saved there: ask for the save again",
+                                save.step));
       return true;
     }
     std::optional<core::WorldCut> part = node.present_part();
@@ -113,9 +114,10 @@ void Saving::save_as_it_stands(node::Node& node, CommandServer& server) {
 void Saving::look_at_doubtful(const node::Node& node, std::optional<core::Step> back_to) {
   std::erase_if(doubtful_, [&](const StandingSave& save) {
     if (!back_to || save.step <= *back_to) return save.step <= node.confirmed_step();
-    report(fmt::format(
-        "{} was saved in state {}, which is computed again since bodies had touched on two nodes: save it anew",
-        save.file, save.step));
+    report(
+        fmt::format("{} is void: it was saved in state {}, which is computed again because bodies had touched on two "
+                    "nodes. Save the world again",
+                    save.file, save.step));
     return true;
   });
 }

@@ -15,8 +15,10 @@ void SetpointIntake::take(std::span<const core::Setpoints> received, std::uint64
       case core::Heard::kLate:
         ++counts_.late;
         if (!std::exchange(late_logged_, true)) {
-          spdlog::warn("setpoints for state {} have come in state {}; how many are late is counted", setpoints.at_step,
-                       step);
+          spdlog::warn(
+              "setpoints for state {} were received in state {}, which is too late: send them for a later state. The "
+              "status counts late setpoints",
+              setpoints.at_step, step);
         }
         break;
       case core::Heard::kRefused:
@@ -27,7 +29,9 @@ void SetpointIntake::take(std::span<const core::Setpoints> received, std::uint64
   }
   counts_.refused = endpoints_refused + not_taken_ + unbearable_;
   if (counts_.refused > 0 && !std::exchange(refused_logged_, true)) {
-    spdlog::warn("setpoints were refused: not understood, too many, too far ahead, or more than a body can bear");
+    spdlog::warn(
+        "setpoints were refused: they cannot be decoded, are too many or too far ahead, or make a body too fast. The "
+        "status counts refused setpoints");
   }
 }
 
@@ -36,8 +40,9 @@ bool SetpointIntake::has_all_awaited(const AwaitedWords::HasReceived& has_receiv
   const bool all_received = awaited_.are_here(has_received, now);
   for (const core::ProgramWord& word : awaited_.take_given_up()) {
     ++not_taken_;
-    spdlog::warn("a step names setpoints {} of program {:x}, which have not come: state {} is computed without them",
-                 word.number, word.program, next);
+    spdlog::warn(
+        "a step command names setpoints {} of program {:x}, which were not received: state {} is computed without them",
+        word.number, word.program, next);
   }
   return all_received;
 }

@@ -62,7 +62,7 @@ bool Succession::leaves_now() {
 command_line::ExitCode Succession::leave_to_successor() {
   const bool is_taken = has_successor(run_.control().strangers(), run_.status.content());
   spdlog::info("region {} leaves after state {}: {}", core::value_of(run_.options.region), run_.node->current_step(),
-               is_taken ? "another process takes over" : "nobody has come to take over yet");
+               is_taken ? "another process takes over" : "no process has taken the region over yet");
   run_.control().send(steering::about_process(messages::RunCommandKind::kLost, run_.options.run, run_.options.region,
                                               run_.status.content().process));
   return command_line::ExitCode::kOk;

@@ -193,14 +193,15 @@ bool CommandClient::has_ended(UnderWay& under_way) {
   }
   if (!delivery.text.empty()) return true;
   delivery.timed_out = !under_way.has_gone_on && (!under_way.accepted || !under_way.subject);
-  delivery.text = !under_way.accepted ? fmt::format("no node has taken it: {} are alive, and {} listen",
-                                                    live_nodes().size(), endpoint_.listeners())
-                  : under_way.has_gone_on
-                      ? fmt::format("the run has gone on from state {} before all regions had saved it: ask again",
-                                    delivery.at_step)
-                  : delivery.is_save  ? "some regions have not saved their parts"
-                  : under_way.subject ? fmt::format("there is no body {}", core::value_of(*under_way.subject))
-                                      : "it was taken, but nobody has shown its effect";
+  delivery.text =
+      !under_way.accepted ? fmt::format("no node has accepted the command: {} nodes are alive, and {} receive commands",
+                                        live_nodes().size(), endpoint_.listeners())
+      : under_way.has_gone_on
+          ? fmt::format("the run has gone on from state {} before all regions had saved it: ask for the save again",
+                        delivery.at_step)
+      : delivery.is_save  ? "some regions have not saved their parts"
+      : under_way.subject ? fmt::format("there is no body {}", core::value_of(*under_way.subject))
+                          : "the command was accepted, but no node has reported its effect";
   return true;
 }
 

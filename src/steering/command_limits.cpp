@@ -48,7 +48,7 @@ std::string problem_with_radius(double radius_m, const config::Launch& launch) {
 
 std::string problem_with_known_shape(const std::optional<core::Shape>& shape, bool is_body,
                                      const config::Launch& launch) {
-  if (!shape) return "nobody knows its shape";
+  if (!shape) return "no node knows its shape";
   std::string why = problem_with_shape(*shape, is_body);
   if (!why.empty() || !is_body) return why;
   return problem_with_radius(core::bounding_radius(*shape), launch);
@@ -100,12 +100,12 @@ struct ProblemOfRun {
   std::string operator()(const core::SendStatic& ask) const {
     if (const std::string unknown = (*this)(core::RemoveStatic{ask.id}); !unknown.empty()) return unknown;
     if (!c.launch.physics.looks_once())
-      return fmt::format("the solver {} knows no statics that move", c.launch.physics.solver);
+      return fmt::format("the solver {} cannot move statics", c.launch.physics.solver);
     const core::StaticBody& fixed = c.scene.statics[core::value_of(ask.id)];
     if (std::holds_alternative<core::Plane>(c.scene.shapes[fixed.shape].shape)) return "a plane cannot move";
     const double longest_s = kMostStepsAhead * c.launch.step_s();
     if (ask.duration_s <= longest_s) return {};
-    return fmt::format("a way of {:.4g} s, allowed: 0 to {:.4g} s", ask.duration_s, longest_s);
+    return fmt::format("found a duration of {:.4g} s, allowed: 0 to {:.4g} s", ask.duration_s, longest_s);
   }
   std::string operator()(const core::SetVelocity& ask) const {
     return first_problem_of(

@@ -93,8 +93,9 @@ std::set<std::uint32_t> RunSteering::dead_regions() {
 
 messages::RunCommand RunSteering::send(Kind kind, std::int64_t count) {
   if (const auto dead = dead_regions(); kind == Kind::kReset && !dead.empty()) {
-    throw SteeringRefused(fmt::format(
-        "reset: regions [{}] have no node now; ask again once somebody has taken them over", fmt::join(dead, ", ")));
+    throw SteeringRefused(
+        fmt::format("reset: regions [{}] have no node now; send reset again once processes have taken them over",
+                    fmt::join(dead, ", ")));
   }
   messages::RunCommand command;
   command.kind = kind;

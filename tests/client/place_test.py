@@ -101,7 +101,7 @@ class Placed(WorldTest):
 
     def test_another_solver_says_that_it_cannot(self):
         world = self.launch("demo", physics__solver="sequential_impulse")
-        with self.assertRaisesRegex(aurasim.Refused, "knows no statics that move"):
+        with self.assertRaisesRegex(aurasim.Refused, "cannot move statics"):
             world.place(1, (0, 0, 1))
 
 

@@ -172,7 +172,7 @@ TEST_F(AStranger, SpeaksOfNoRegionBesideItsPartition) {
     zero_bus_.statuses();
     return zero_.participant.refused_of_strangers() == 1;
   }));
-  EXPECT_THAT(said(), HasSubstr("speaks of region 0 where others do"));
+  EXPECT_THAT(said(), HasSubstr("publishes a status of region 0 in the partition of another"));
 }
 
 TEST_F(AStranger, SaysOnlyWhatOperatorsMay) {

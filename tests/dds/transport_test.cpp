@@ -168,7 +168,8 @@ TEST(Waiting, NamesTheRegionsThatAreMissing) {
     FAIL() << "regions 2 and 3 are not there";
   } catch (const NeighboursMissing& missing) {
     EXPECT_THAT(missing.regions(), ElementsAre(RegionId{2}, RegionId{3}));
-    EXPECT_THAT(missing.what(), HasSubstr("region 0 has waited in vain for region 2 (nothing heard of it), region 3"));
+    EXPECT_THAT(missing.what(),
+                HasSubstr("region 0 has waited in vain for region 2 (nothing received from it), region 3"));
     EXPECT_THAT(missing.what(), Not(HasSubstr("region 1")));
   }
   EXPECT_FALSE(a.transport.all_matched());

@@ -69,7 +69,7 @@ TEST_F(Ros2, IsNotSpokenWithKeys) {
   std::filesystem::create_directory(folder() / "keys");
   Process& run = launch("run", launch_, set({"dds.security=" + (folder() / "keys").string()}));
   expect_exit(run, 2);
-  EXPECT_THAT(run.err(), ::testing::HasSubstr("ROS 2 is told everything in the clear"));
+  EXPECT_THAT(run.err(), ::testing::HasSubstr("ROS 2 gets everything unencrypted"));
 }
 
 }  // namespace

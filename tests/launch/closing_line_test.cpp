@@ -33,7 +33,9 @@ TEST_F(ClosingLine, NamesThoseOfWhomNothingIsKnown) {
 }
 
 TEST_F(ClosingLine, IsThereForARunThatBrokeOffOrHasNotBegun) {
-  EXPECT_EQ(line(), "the run has broken off: no node has said that it came to its end (--report DIR records it)\n");
+  EXPECT_EQ(line(),
+            "the run has broken off: no node has published that it came to its end. --report DIR keeps the records of "
+            "each node\n");
   EXPECT_EQ(line(false), "the run has not begun\n");
 }
 

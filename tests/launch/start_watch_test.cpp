@@ -47,7 +47,7 @@ TEST_F(Start, NamesWhoNeverSpoke) {
   says(1, messages::NodeState::kWaiting);
   EXPECT_EQ(after(11s), "");
   says(1, messages::NodeState::kWaiting);
-  EXPECT_THAT(after(20s), HasSubstr("the nodes of regions [0, 2] have said nothing for 30 s"));
+  EXPECT_THAT(after(20s), HasSubstr("the nodes of regions [0, 2] have published nothing for 30 s"));
 }
 
 TEST_F(Start, NamesWhoHasFallenSilent) {
@@ -57,7 +57,7 @@ TEST_F(Start, NamesWhoHasFallenSilent) {
   for (const std::uint32_t some : {0U, 1U}) says(some, messages::NodeState::kWaiting);
   EXPECT_EQ(after(10s), "");
   for (const std::uint32_t some : {0U, 1U}) says(some, messages::NodeState::kWaiting);
-  EXPECT_THAT(after(1s), HasSubstr("the nodes of regions [2] have said nothing"));
+  EXPECT_THAT(after(1s), HasSubstr("the nodes of regions [2] have published nothing"));
 }
 
 }  // namespace

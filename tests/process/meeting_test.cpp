@@ -79,7 +79,7 @@ TEST(Meeting, NodesThatDoNotWaitAreNamedByWhatTheyDo) {
   const SeenNodes nodes = {{RegionId{0}, node_in(0, NodeState::kWaiting)},
                            {RegionId{2}, node_in(2, NodeState::kStarting)}};
   EXPECT_EQ(who_does_not_wait(nodes, 4),
-            "regions that have not reported: [1, 3]; that still look for their neighbours: [2]");
+            "regions that have not reported: [1, 3]; regions that still look for their neighbours: [2]");
 }
 
 TEST(Meeting, AClockThatLooksBehindIsNamedOnlyAcrossHosts) {

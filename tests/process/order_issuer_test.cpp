@@ -89,7 +89,7 @@ TEST_F(OrderIssuerTest, StaticsAreNumberedAheadOfTheScene) {
 }
 
 TEST_F(OrderIssuerTest, AMeshThatNobodyHasIsRefused) {
-  EXPECT_EQ(spawn(core::MeshRef{8, core::MeshUse::kHull}).refused, "nobody knows its shape");
+  EXPECT_EQ(spawn(core::MeshRef{8, core::MeshUse::kHull}).refused, "no node knows its shape");
 }
 
 TEST_F(OrderIssuerTest, AMeshIsNotAskedForAgainOnceItsShapeIsMade) {

@@ -197,11 +197,12 @@ TEST_F(Standing, NoOtherSpareIsCalledSoonForARegionThatHasGotOne) {
 TEST(WhatRecoveryWaitsFor, IsTheMostUrgentReason) {
   const std::vector<RegionId> none, two = {RegionId{2}}, both = {RegionId{1}, RegionId{3}};
   EXPECT_EQ(what_recovery_waits_for(true, "begin again?", two, both),
-            "hears too few of the others, and waits for them");
+            "receives from too few of the other nodes, and waits for them");
   EXPECT_EQ(what_recovery_waits_for(false, "begin again?", two, both), "begin again?");
-  EXPECT_EQ(what_recovery_waits_for(false, "", two, both), "waits for whoever takes over regions [2]");
-  EXPECT_EQ(what_recovery_waits_for(false, "", none, both), "does not hear regions [1, 3], which others hear");
-  EXPECT_EQ(what_recovery_waits_for(false, "", none, none), "waits until all others stand");
+  EXPECT_EQ(what_recovery_waits_for(false, "", two, both), "waits for processes that take over regions [2]");
+  EXPECT_EQ(what_recovery_waits_for(false, "", none, both),
+            "does not receive from regions [1, 3], from which other nodes receive");
+  EXPECT_EQ(what_recovery_waits_for(false, "", none, none), "waits until all other nodes have stopped computing");
   EXPECT_EQ(nobody_takes_over(both), "nobody takes over regions [1, 3], whose nodes have died");
 }
 
