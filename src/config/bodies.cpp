@@ -17,7 +17,7 @@ namespace {
 const KeysOf<core::Material>& keys_of_material() {
   using core::Material;
   static const KeysOf<Material> keys(
-      "material", "What the surface of a body is like, and how it is slowed down.",
+      "material", "The properties of a body's surface, and its damping.",
       {
           optional("friction", &Material::friction, number(Range::from_to(0, 100)),
                    "Coulomb's; that of a contact is the product of the two bodies'"),
@@ -39,7 +39,7 @@ const KeysOf<core::Prototype>& keys_of_prototype() {
   using namespace core::limits;
   using core::Prototype;
   static const KeysOf<Prototype> keys(
-      "prototype", "What bodies of one kind share.",
+      "prototype", "The properties that bodies of one kind share.",
       {
           shape_key("one that can move: no mesh, no heightfield, no plane"),
           required("mass", &Prototype::mass_kg, number(Range::from_to(kLightestOfScene_kg, kHeaviestOfScene_kg), "kg"),

@@ -74,7 +74,7 @@ const KeyTable& chain_keys() {
 const KeyTable& formation_keys() {
   static const KeyTable keys{
       .title = "every generator",
-      .about = "What all of them take.",
+      .about = "The keys that all generators take.",
       .keys = {
           required("prototype", name_of("prototype"), "what kind of bodies"),
           optional("position", vec3("m", kPlace),

@@ -109,7 +109,8 @@ const KeyTable& hinge_keys() { return keys_of_hinge(); }
 const KeyTable& slider_keys() { return keys_of_slider(); }
 
 const KeyTable& fixed_keys() {
-  static const KeyTable keys{.title = "joint: fixed", .about = "Neither moves nor turns. It has no keys: `fixed: {}`."};
+  static const KeyTable keys{.title = "joint: fixed",
+                             .about = "A joint that neither moves nor turns. It has no keys: `fixed: {}`."};
   return keys;
 }
 

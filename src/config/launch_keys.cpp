@@ -57,9 +57,8 @@ const KeysOf<Time>& time_keys() {
 const KeysOf<Tolerances>& tolerances_keys() {
   static const KeysOf<Tolerances> keys(
       "tolerances",
-      "What the run promises to itself; lookahead and auras are made for it. A broken promise is counted: a collision "
-      "may "
-      "have come late, or been missed.",
+      "Bounds that the run promises to keep; lookahead and auras are made for them. A broken promise is counted: a "
+      "collision may have come late, or been missed.",
       {
           optional("speed", &Tolerances::speed_m_s, number(Range::from_to(1e-3, 1e4), "m/s"),
                    "no body is faster; auras reach, and regions have to be wide, in proportion to it"),
@@ -162,11 +161,10 @@ const KeysOf<Dds>& dds_keys() {
           optional("peers", &Dds::peers, list(1, 256, text("an address")),
                    "ADDRESS or ADDRESS:PORT; required with discovery: peers and server")
               .otherwise("none"),
-          optional(
-              "security", text("a folder"),
-              "keys made by `aurasim keys`, relative to this file: only who has one joins the run, and what is said "
-              "is encrypted")
-              .otherwise("none: an open run, which whoever reaches the network can join"),
+          optional("security", text("a folder"),
+                   "keys made by `aurasim keys`, relative to this file: only a process that has one joins the run, and "
+                   "messages are encrypted")
+              .otherwise("none: an open run, which every process that reaches the network can join"),
           optional("impair", &Dds::impair, impair_keys, "a worse network than there is"),
       });
   return keys;
@@ -183,7 +181,7 @@ const KeysOf<Observe>& observe_keys() {
 
 const KeysOf<Control>& control_keys() {
   static const KeysOf<Control> keys(
-      "control", "Of programs that steer bodies and joints (docs/client.md).",
+      "control", "Setpoints of programs that steer bodies and joints (docs/client.md).",
       {
           optional("late", &Control::late,
                    choice<core::LateSetpoint>(
@@ -191,7 +189,7 @@ const KeysOf<Control>& control_keys() {
                    "what comes too late for the state that it names takes effect in the next one, or not at all; it is "
                    "counted either way"),
           optional("silence", &Control::silence_s, number(Range::from_to(0.001, 1e6), "s"),
-                   "simulated; a program of which nothing has been heard for longer has fallen silent"),
+                   "simulated; a program from which nothing was received for longer has fallen silent"),
           optional("on_silence", &Control::on_silence,
                    choice<core::OnSilence>({{"hold", core::OnSilence::kHold},
                                             {"zero", core::OnSilence::kZero},
@@ -223,7 +221,7 @@ const KeysOf<Ros2>& ros2_keys() {
 
 const KeysOf<Survival>& survival_keys() {
   static const KeysOf<Survival> keys(
-      "survival", "What becomes of the run when one of its nodes dies.",
+      "survival", "How the run goes on when one of its nodes dies.",
       {
           optional("on_death", &Survival::on_death,
                    choice<OnDeath>({{"recover", OnDeath::kRecover}, {"stop", OnDeath::kStop}}),

@@ -38,7 +38,7 @@ const KeyTable& orientation_keys() {
 const KeyTable& pose_keys() {
   static const KeyTable keys{
       .title = "position and orientation",
-      .about = "Where a thing stands, of its origin.",
+      .about = "The pose of a thing: the place and rotation of its origin.",
       .keys = {optional("position", vec3("m", kPlace), "[x, y, z]; z is up").usual("[0, 0, 0]"),
                optional("orientation", map(orientation_keys), "how it is turned").otherwise("not turned")}};
   return keys;

@@ -17,7 +17,7 @@ constexpr std::size_t kMostStatics = 100'000;
 const KeysOf<core::Scene>& scene_keys() {
   using core::Scene;
   static const KeysOf<Scene> keys(
-      "scene file", "What a world is made of. Lengths in metres, z is up; paths are relative to the file.",
+      "scene file", "The contents of a world. Lengths are in metres, z is up; paths are relative to the file.",
       {
           optional("name", &Scene::name, text("a name"), "shown by the viewer and in reports")
               .otherwise("the file's, without its ending"),

@@ -22,7 +22,7 @@ const KeysOf<core::StaticPath>& keys_of_path() {
   static const KeyTable kStop{
       .title = "stop of a path",
       .about =
-          "Where a static is at a time, as `position` and `orientation` in its own axes, seen from where it stands "
+          "The pose of a static at a time, as `position` and `orientation` in its own axes, relative to its pose "
           "at the start.",
       .keys = {required("at", number(Range::above(0, 1e6), "s"), "when it is there, from the start on")}};
   static const KeysOf<StaticPath> keys(
