@@ -1,4 +1,4 @@
-// What core/ asks physics/ about prototypes: distances between shapes, and sizes.
+// Questions of core/ to physics/ about prototypes: distances between shapes, and sizes.
 #pragma once
 
 #include <limits>

@@ -70,7 +70,7 @@ struct Command {
 enum class Outcome : std::uint8_t {
   kAccepted,  ///< takes effect at `at_step`
   kDone,      ///< has taken effect
-  kRefused,   ///< text says why
+  kRefused,   ///< the text gives the reason
   kSeen,      ///< reply of one region: what a ray hit, or that its part of the world is saved
 };
 

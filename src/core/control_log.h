@@ -16,7 +16,7 @@ namespace aurasim::core {
 
 enum class Heard : std::uint8_t {
   kInTime,
-  kLate,     ///< its state had been computed; ControlRules::late says what becomes of it
+  kLate,     ///< its state had been computed; ControlRules::late decides its use
   kRefused,  ///< too far ahead, too many, or a joint that is not there
 };
 

@@ -1,5 +1,5 @@
-// A quick answer to "is any of these spheres near that one?", which says yes too often and never no too often. The
-// world is divided into square vertical columns. A bit for each column says whether a sphere reaches into it. Columns
+// A quick answer to "is any of these spheres near that one?", which is yes too often and never no too often. The
+// world is divided into square vertical columns. A bit for each column is set if a sphere reaches into it. Columns
 // share bits.
 #pragma once
 

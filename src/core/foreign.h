@@ -1,4 +1,4 @@
-// What a node knows in one state of the bodies that other nodes host.
+// A node's knowledge, in one state, of the bodies that other nodes host.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct Foreign {
   bool born = true;  ///< it exists in the state that its aura describes
 };
 
-/// Some bodies of one host, near each other, all of them slow or all of them fast. Neighbours are searched for the
+/// A block of bodies of one host that are near each other, and all slow or all fast. Neighbours are searched for the
 /// whole block at once, because a body near one of them is mostly near all.
 struct ForeignBlock {
   RegionId host{};

@@ -1,5 +1,5 @@
 // Ledgers that make each hand-off take effect exactly once. (source, destination, sequence) identifies a hand-off; the
-// epochs in it say which copy of a body is the valid one.
+// epochs in it decide which copy of a body is the valid one.
 #pragma once
 
 #include <cstdint>

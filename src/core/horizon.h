@@ -59,8 +59,8 @@ constexpr Step together_after_touch(int lookahead) { return 2 * lookahead + 2; }
 /// A body just handed over stays a ghost until the first aura of its new host can have arrived: K states there and K
 /// back.
 constexpr Step ghost(int lookahead) { return 2 * lookahead; }
-/// What an aura promises has to hold for so many states: others act upon it until it is K states old, and what they
-/// decide takes effect K states later.
+/// Number of states for which the promise of an aura has to hold: others act upon it until it is K states old, and what
+/// they decide takes effect K states later.
 constexpr Step promise(int lookahead) { return 2 * lookahead; }
 /// A cluster has to be an island for so many states in a row before it goes home. By then all that was sent because of
 /// its earlier place has arrived and was looked at.

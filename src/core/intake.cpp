@@ -65,7 +65,8 @@ bool Intake::belongs(const Message& message, std::uint64_t map_version) {
   return false;
 }
 
-/// Is it a message of a region that is not our neighbour yet? That region may have received our introduction before us.
+/// True if the message is of a region that is not a neighbour of this node yet. That region may have received the
+/// introduction before this node.
 template <class Message>
 bool Intake::is_early(const Message& message) const {
   const bool is_region = value_of(message.source) < vicinity_.map.size() && message.source != vicinity_.self;

@@ -1,4 +1,4 @@
-// What one observer wants to receive of a run: which bodies, in which states, and whether also contacts and joints.
+// The interest of one observer in a run: which bodies, in which states, and whether also contacts and joints.
 #pragma once
 
 #include <cstddef>

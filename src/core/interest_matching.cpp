@@ -18,7 +18,7 @@ bool is_within(const Path& body, const Vec3& p, double radius_m, double distance
   return (body.pose.p_WB - p).squaredNorm() <= reach * reach;
 }
 
-/// Does a cluster of ours that so far would go to `other` go to `host` instead? False if `host` is not among `live`.
+/// True if an own cluster that so far would go to `other` goes to `host` instead. False if `host` is not among `live`.
 bool pulls_from(RegionId host, RegionId other, std::span<const RegionId> live, const Ranks& ranks) {
   return host != other && std::binary_search(live.begin(), live.end(), host) && ranks.pulls(host) &&
          ranks.outranks(host, other);

@@ -95,7 +95,7 @@ struct SliderJoint {
   std::optional<JointCoupling> follows = {};  ///< with a drive
 };
 
-/// Neither moves nor turns.
+/// A joint that neither moves nor turns.
 struct FixedJoint {};
 
 /// One degree of freedom of a spring.

@@ -12,7 +12,7 @@
 
 namespace aurasim::core {
 
-/// The two bodies of a joint, by any numbers that tell bodies apart. `b` empty: the world.
+/// The two bodies of a joint, by any numbers that differ for different bodies. `b` empty: the world.
 struct JointEnds {
   std::uint64_t a = 0;
   std::optional<std::uint64_t> b;

@@ -1,4 +1,4 @@
-// What nodes send each other (docs/design.md, "On the wire"). Plain values: the transport decides how they travel.
+// The messages between nodes (docs/design.md, "On the wire"). Plain values: the transport decides how they travel.
 // Every message carries the step it describes (its stamp) and the generation of the run.
 #pragma once
 
@@ -130,7 +130,8 @@ struct Inbox {
   void clear();
 };
 
-/// What one step of one node publishes. The aura batch goes to every neighbour, the rest to its destination.
+/// The messages that one step of one node publishes. The aura batch goes to every neighbour, the rest to its
+/// destination.
 struct Outbox {
   std::vector<RegionId> listeners;  ///< regions to which the batch goes, ascending
   std::vector<RegionId> expected;   ///< regions that will soon be listeners

@@ -1,4 +1,4 @@
-// What one neighbour has published: its aura batches in order of stamp, and the set of auras that results from them.
+// The publications of one neighbour: its aura batches in order of stamp, and the set of auras that results from them.
 #pragma once
 
 #include <algorithm>

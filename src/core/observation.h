@@ -1,5 +1,5 @@
-// What a node sends to one observer (core/interest.h) about one state. Observers only watch: nothing that they receive,
-// or fail to receive, changes what is computed.
+// The message of a node to one observer (core/interest.h) about one state. Observers only watch: nothing that they
+// receive, or fail to receive, changes what is computed.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,7 @@ struct ObservedBody {
   bool stale = false;  ///< row holds the earlier state in which the body left
 };
 
-/// What one region knows of one state.
+/// One region's part of one state.
 struct Observation {
   enum class Kind : std::uint8_t {
     kHosted = 0,  ///< wanted bodies that the source hosts, or has handed over and no other node has published since

@@ -1,5 +1,5 @@
-// Counts the work that this process gets done, so that a long computation can be told from a hang. Core and physics
-// have no clock, so they only count. dds/liveliness_asserter.h has a clock and watches whether the count grows.
+// Counts the work that this process gets done, so that a long computation can be distinguished from a hang. Core and
+// physics have no clock, so they only count. dds/liveliness_asserter.h has a clock and watches whether the count grows.
 #pragma once
 
 #include <atomic>

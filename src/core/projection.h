@@ -16,7 +16,7 @@
 
 namespace aurasim::core {
 
-/// What the projection remembers of a body hosted here.
+/// State of the projection for one body hosted here.
 struct Track {
   BodyId id{};
   Epoch epoch = 0;

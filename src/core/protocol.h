@@ -149,7 +149,7 @@ class Protocol {
   /// Hands over the cluster of a departure, as released from physics. Call once for each departure, in order.
   void hand_over(const Departure& departure, ClusterState cluster);
 
-  /// What the step publishes. Complete after the last hand_over().
+  /// The messages that the step publishes. Complete after the last hand_over().
   const Outbox& outbox() const { return outbox_; }
 
   /// Reports that computing `step` took `frame_s` of wall-clock time. Longer than T_F counts as a violation.

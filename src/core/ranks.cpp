@@ -53,8 +53,8 @@ const RankClaim& Ranks::claim(const Node& node, Step n) const {
   return n >= node.claims.next.stamp + horizon::rank_notice(lookahead_) ? node.claims.next : node.claims.held;
 }
 
-/// Does a rank higher than b in state n? With equal weights the older claim ranks higher, so that two clusters of one
-/// size do not change ranks all the time.
+/// True if node `a` ranks higher than node `b` in state n. With equal weights the older claim ranks higher, so that two
+/// clusters of one size do not change ranks all the time.
 bool Ranks::outranks(const Node& a, const Node& b, Step n) const {
   const RankClaim& of_a = claim(a, n);
   const RankClaim& of_b = claim(b, n);

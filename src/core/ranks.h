@@ -70,7 +70,7 @@ class Ranks {
   std::vector<Node> nodes_;  ///< our node first
 };
 
-/// What a node claims for itself.
+/// Decides which rank a node claims for itself.
 class RankClaimer {
  public:
   /// The largest clusters of a node, in bodies.

@@ -28,7 +28,7 @@ struct Rectangle {
   double distance(const Rectangle& other) const;
 };
 
-/// What is wrong with a set of boxes; `what()` names the boxes.
+/// Thrown for a set of boxes that is no region map; `what()` names the boxes and the fault.
 class BadRegionMap : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;

@@ -1,4 +1,4 @@
-// What a node publishes for observers: which bodies it hosts, where they are, and where those that left went. Observers
+// Messages of a node for observers: which bodies it hosts, where they are, and where those that left went. Observers
 // only watch: nothing that they receive, or fail to receive, changes what is computed.
 #pragma once
 
@@ -42,7 +42,7 @@ struct RemovedBody {
   Epoch epoch = 0;
 };
 
-/// What changed at one source since its last tick, or, in a key frame, all bodies of the source.
+/// The changes at one source since its last tick, or, in a key frame, all bodies of the source.
 struct Replica {
   RegionId source{};
   Generation generation = 0;

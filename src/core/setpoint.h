@@ -85,10 +85,10 @@ struct StaticEffect {
   StaticSetpoint setpoint;
 };
 
-/// What happens to a setpoint for a state that has been computed already.
+/// Use of a setpoint for a state that has been computed already.
 enum class LateSetpoint : std::uint8_t { kNextState, kDropped };
 
-/// What happens to the setpoints of a program that sends no messages any more.
+/// Use of the setpoints of a program that sends no messages any more.
 enum class OnSilence : std::uint8_t {
   kHold,  ///< stop: force, torque, effort and speed become 0; drives keep their positions
   kZero,  ///< all its setpoints end

@@ -60,7 +60,8 @@ Aura::Steps TightAura::notice_steps(int hops) const {
   return chained(2 * k - 1, 3 * k - 1, hops);
 }
 
-/// Both bodies may move for as long as a foreign body before it meets one of ours.
+/// Steps in which two own bodies may come together: each may move for as long as a foreign body before it meets an own
+/// one.
 Aura::Steps TightAura::link_steps(int hops) const {
   const int k = rules().lookahead;
   return chained(2 * k - 1, 2 * k - 2, hops);

@@ -5,10 +5,11 @@
 
 namespace aurasim::core {
 
-/// Where nodes wait for each other, the share of its speed by which a body may leave its path. A smaller one leads to
-/// more redos, which cost more than what it saves (docs/decisions/0033-no-pushes.md).
+/// Share of its speed by which a body may leave its path, in runs whose nodes wait for each other. A smaller one leads
+/// to more redos, which cost more than what it saves (docs/decisions/0033-no-pushes.md).
 inline constexpr double kUncertainty = 0.5;
-/// Where nobody waits, messages come later than promised. Then a larger share has made fewer collisions late.
+/// The same share in free-running runs. Messages come later than promised there, and a larger share has made fewer
+/// collisions late.
 inline constexpr double kUncertaintyFreeRunning = 1.5;
 
 constexpr double usual_uncertainty(SyncMode sync) {

@@ -13,7 +13,8 @@
 
 namespace aurasim::cut {
 
-/// What a world was computed with. A run that differs in any of it goes on with other bits, or cannot use the world.
+/// Identity of the scene, physics and program that computed a world. A run that differs in any of it goes on with other
+/// bits, or cannot use the world.
 struct Identity {
   std::string program;      ///< version and commit
   std::string launch;       ///< name of the launch file, for people
@@ -31,7 +32,7 @@ struct SavedWorld {
   std::int64_t saved_ms = 0;  ///< wall-clock time of the save, ms since 1970; 0: not known
 };
 
-/// Thrown for a file that cannot be used. The text begins with the file's name and says why.
+/// Thrown for a file that cannot be used. The text begins with the file's name and gives the reason.
 class BadCut : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -116,7 +116,7 @@ PartStore::Listing listing_of(const fs::path& folder, const Contents& contents) 
   return listing;
 }
 
-/// Throws BadCut for `file`, of which no world has all parts. The text says what is missing or unusable.
+/// Throws BadCut for `file`, of which no world has all parts. The text names what is missing or unusable.
 [[noreturn]] void refuse_parts(const fs::path& file, const Contents& contents) {
   const std::vector<Found>* most = nullptr;
   for (const auto& [key, parts] : contents.worlds) {

@@ -59,7 +59,7 @@ class PartWriter {
              const std::string& world);
   /// True if the last part of this kind is still being written.
   bool is_writing(SaveKind kind) const;
-  /// Notes the saves that another region has or has not written, as its status says.
+  /// Notes the saves that another region has or has not written, from its status.
   void receive(core::RegionId region, const std::vector<std::uint64_t>& saved,
                const std::vector<std::uint64_t>& not_saved) {
     ledger_.receive(region, saved, not_saved);

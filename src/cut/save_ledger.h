@@ -27,7 +27,7 @@ class SaveLedger {
   void begin(std::uint64_t save) { open_.push_back({save, {}, {}, {}}); }
   /// Notes that this region's part is on disk, or could not be written.
   void note_own(std::uint64_t save, bool is_written);
-  /// Notes what another region's status says of its own parts (dds::Status). Every status repeats it.
+  /// Notes what another region's status contains about its own parts (dds::Status). Every status repeats it.
   void receive(core::RegionId region, const std::vector<std::uint64_t>& saved,
                const std::vector<std::uint64_t>& not_saved);
   /// Forgets a save whose outcome does not matter any more.

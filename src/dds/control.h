@@ -20,7 +20,7 @@ struct ControlSettings {
   /// Map version that received commands must name; others are refused and counted. Maps of all runs are received.
   /// Nothing: all commands are accepted.
   std::optional<std::uint64_t> map_version = {};
-  /// This process is the node of this region and may publish_status. Nothing: launcher or tool.
+  /// Region whose node this process is; it may publish_status. Nothing: the process is a launcher or tool.
   std::optional<core::RegionId> region = {};
   /// Agreement hash of this run. A node whose status names another one is a stranger. Nothing: nodes of all runs count.
   std::optional<std::uint64_t> agreement = {};
@@ -29,9 +29,10 @@ struct ControlSettings {
   std::optional<std::uint64_t> run = {};
   /// Number of regions in the run. A node that claims a region beyond them is a stranger.
   std::uint32_t region_count = 1U << 20;
-  /// Neither sends nor receives commands, and publishes no map: in a run with keys a viewer has no right to.
+  /// The process neither sends nor receives commands, and publishes no map: in a run with keys a viewer has no right
+  /// to.
   bool only_watches = false;
-  /// Receives no commands, so DDS keeps none for this process.
+  /// The process receives no commands, so DDS keeps none for it.
   bool only_sends = false;
 };
 

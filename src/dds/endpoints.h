@@ -50,8 +50,8 @@ class Writer {
   /// Writes one message. `sample` points to the generated type of the topic. A message that does not fit into a
   /// datagram is written in parts (parts.h).
   WriteResult write(void* sample);
-  /// Drops all samples from the history, whoever has not acknowledged them. Call it before write() where the newest
-  /// message of a writer replaces all earlier ones.
+  /// Drops all samples from the history, also those that some readers have not acknowledged. Call it before write()
+  /// where the newest message of a writer replaces all earlier ones.
   void forget_all();
   /// Drops all samples from the history if every reader has acknowledged all of them. Returns how many samples there
   /// were. Names a reader in the log that has acknowledged nothing for as many calls as the history is deep. Only for
@@ -109,13 +109,13 @@ class Reader {
   /// Messages lost since the last call, because parts of them are missing or do not fit together.
   std::uint64_t take_lost() { return std::exchange(lost_, 0); }
 
-  /// Refuses a taken sample. Counted against its sender only if it is no message of ours at all. Other versions, runs
-  /// and maps, and what a person has typed, are not counted as the sender's fault.
+  /// Refuses a taken sample. Counted against its sender only if it is no message of this program at all. Other
+  /// versions, runs and maps, and what a person has typed, are not counted as the sender's fault.
   void refuse_from(const Origin& origin, messages::WireError error);
   /// Refuses a taken sample that its sender had no right to send, and counts it against the sender. `what` names the
   /// message.
   void refuse_from(const Origin& origin, const std::string& what);
-  /// Drops a taken sample because its sender exceeds a rate limit. `what` says what the limit is.
+  /// Drops a taken sample because its sender exceeds a rate limit. `what`: the limit, for the log.
   void ration(const Origin& origin, const std::string& what);
 
   const ReaderWatch& watch() const { return watch_; }

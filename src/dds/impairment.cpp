@@ -38,7 +38,8 @@ bool MetatrafficPorts::is_discovery(bool multicast, std::uint32_t port) const {
 ImpairedLink::ImpairedLink(const Impairment& impairment, std::uint64_t stream)
     : impairment_(impairment), random_(mixed(impairment.seed ^ mixed(stream))) {}
 
-/// Does not use std::uniform_real_distribution, which may differ between standard libraries.
+/// A random number from 0 to below 1. std::uniform_real_distribution is not used, because it may differ between
+/// standard libraries.
 double ImpairedLink::uniform() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
 
 ImpairedLink::Time ImpairedLink::leaves_the_bottleneck(Time now, std::size_t bytes) {

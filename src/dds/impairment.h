@@ -50,7 +50,7 @@ struct ImpairmentCounters {
   std::uint64_t queued_bytes = 0;
 };
 
-/// Ports by which discovery and user data are told apart. RTPS gives the participants of a domain fixed ports: one for
+/// Ports that distinguish discovery from user data. RTPS gives the participants of a domain fixed ports: one for
 /// multicast, then for each participant one for discovery and one for user data.
 struct MetatrafficPorts {
   std::uint32_t first_unicast = 7410;  ///< discovery port of participant 0 of the domain
@@ -58,7 +58,8 @@ struct MetatrafficPorts {
   std::uint32_t end = 7650;            ///< end of the domain's ports (exclusive)
   std::vector<std::uint32_t> servers;  ///< ports of discovery servers
 
-  /// True for discovery traffic. Multicast counts as discovery, because no reader of ours receives user data there.
+  /// True for discovery traffic. Multicast counts as discovery, because no reader of this program receives user data
+  /// there.
   bool is_discovery(bool multicast, std::uint32_t port) const;
 };
 
@@ -76,7 +77,7 @@ class ImpairedLink {
   /// Most bytes that may wait; a datagram beyond them is dropped (kOverflows).
   static constexpr std::size_t kMostQueuedBytes = std::size_t{64} << 20;
 
-  /// `stream` tells participants of one seed apart: each has random numbers of its own.
+  /// `stream` distinguishes participants of one seed: each has random numbers of its own.
   ImpairedLink(const Impairment& impairment, std::uint64_t stream);
 
   /// Decides for a datagram of `bytes` to `destination` (any number that stands for it), and counts it accordingly.

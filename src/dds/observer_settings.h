@@ -4,7 +4,7 @@
 
 namespace aurasim::dds {
 
-/// What an observer knows of the run that it watches. Replicas of other runs are refused and counted.
+/// Identity of the run that an observer watches. Replicas of other runs are refused and counted.
 struct ObserverSettings {
   std::uint64_t map_version = 0;
   std::uint32_t region_count = 0;

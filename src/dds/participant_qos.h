@@ -8,7 +8,7 @@
 
 namespace aurasim::dds {
 
-/// Returns the QoS. settings.interfaces, .discovery and .peers, where given, replace what the profile says. The largest
+/// Returns the QoS. settings.interfaces, .discovery and .peers, where given, replace those of the profile. The largest
 /// message is what fits into a packet of the links that carry it (link_mtu.h). Throws DdsError for an invalid value.
 eprosima::fastdds::dds::DomainParticipantQos participant_qos(Profiles& profiles, const Settings& settings);
 

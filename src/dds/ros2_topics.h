@@ -1,4 +1,4 @@
-// How ROS 2 names topics and types on the wire, and the hashes by which it tells types apart (docs/ros2.md).
+// How ROS 2 names topics and types on the wire, and the hashes by which it distinguishes types (docs/ros2.md).
 #pragma once
 
 #include <string>

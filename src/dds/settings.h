@@ -27,7 +27,7 @@ struct Settings {
   std::vector<std::string> interfaces;
   config::Discovery discovery = config::Discovery::kMulticast;
   std::vector<std::string> peers;  ///< "address" or "address:port" (UDP); replaces the profile's initial peers
-  /// Overrides what the profile's properties aurasim.impair.* say.
+  /// Overrides the profile's properties aurasim.impair.*.
   ImpairmentOverrides impairment;
   /// Separates the random numbers of participants. Each participant of a run uses a different value, so that they lose
   /// different datagrams with the same seed.

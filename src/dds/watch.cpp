@@ -15,7 +15,7 @@ using eprosima::fastrtps::rtps::iHandle2GUID;
 namespace {
 
 constexpr std::string_view kUserDataKey = "region=";
-/// Dead writers are remembered so that observers can say "lost"; no more than this many per reader.
+/// Most dead writers that a reader remembers. They are remembered so that observers can show "lost".
 constexpr std::size_t kMaxLost = 1000;
 
 }  // namespace

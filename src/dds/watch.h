@@ -94,7 +94,7 @@ class WriterWatch final : public eprosima::fastdds::dds::DataWriterListener {
   std::uint64_t matches_ = 0;
 };
 
-/// Which region an endpoint belongs to, as its user data says. Thread-safe.
+/// The regions of endpoints, from their user data. Thread-safe.
 class Directory {
  public:
   void add(const Guid& endpoint, core::RegionId region);

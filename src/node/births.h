@@ -16,7 +16,8 @@ struct NewBody {
   std::optional<core::Order> order;  ///< the order that makes it; nothing: an injector does
 };
 
-/// What has not been announced yet. Every node keeps all of it, because any node may own the place of a birth.
+/// Bodies that have not been announced yet. Every node keeps all of them, because any node may own the place of a
+/// birth.
 struct ToBeBorn {
   std::vector<core::Order> spawns;            ///< spawn orders received so far, in sequence
   std::vector<std::uint64_t> next_injection;  ///< per injector, the first index not yet announced

@@ -17,7 +17,7 @@ constexpr std::size_t kMostCuts = 40;
 /// Memory of so many dropped cuts is kept for new ones.
 constexpr std::size_t kMostMemory = 4;
 
-/// Is the cut one that is kept for pairs that a redo has not brought together?
+/// True if the cut is kept for pairs that a redo has not brought together.
 bool is_older_kind(const Cut& cut) { return cut.step % core::horizon::kBetweenOlderCuts == 0; }
 
 bool same_pair(const core::TogetherPair& pair, const core::Alarm& alarm) {

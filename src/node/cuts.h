@@ -17,7 +17,7 @@
 
 namespace aurasim::node {
 
-/// What a node needs to go back to a state: a part of a consistent cut through the run.
+/// A node's part of a consistent cut through the run, from which it can go back to the state.
 struct Cut {
   core::Step step = 0;
   core::ClusterState bodies;            ///< hosted here; those that left in this state are taken out

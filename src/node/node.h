@@ -211,7 +211,7 @@ class Node {
   void doubt(core::Step step);
   void note_moves();
 
-  /// What the run began with on this node. Kept as long as a redo may go back to it.
+  /// The world that the run began with on this node. Kept as long as a redo may go back to it.
   struct Beginning {
     core::WorldCut world;
     std::vector<core::BodyRecord> born_soon;  ///< announced neither in the world nor later

@@ -12,7 +12,7 @@
 
 namespace aurasim::node {
 
-/// What is known of another region's node.
+/// Signs of life of another region's node.
 struct PeerSign {
   bool lost = false;  ///< its liveliness has ended
   bool left = false;  ///< it has published that it ends

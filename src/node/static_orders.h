@@ -52,8 +52,8 @@ class LateWords {
   };
 
   void note(core::Step at_step, core::Step heard);
-  /// Those that another node may have received at another time, so that it computes another world when the states from
-  /// `from` to `until` are computed again.
+  /// The setpoints that another node may have received at another time, so that it computes another world when the
+  /// states from `from` to `until` are computed again.
   std::vector<Word> that_matter(core::Step from, core::Step until) const;
 
  private:

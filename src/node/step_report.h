@@ -1,4 +1,4 @@
-// What a node reports of one step: rows for the records, and what observers and clients need to know.
+// The report of a node on one step: rows for the records, and results for observers and clients.
 #pragma once
 
 #include <cstddef>

@@ -5,7 +5,8 @@
 
 namespace aurasim::node {
 
-/// Both lists are in ascending order and share most bodies.
+/// Compares the bodies of this state with those of the state before. Both lists are in ascending order and share most
+/// bodies.
 void Touches::note(const core::Snapshot& snapshot) {
   std::swap(now_, before_);
   now_.clear();

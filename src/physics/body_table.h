@@ -23,7 +23,7 @@ struct HostedBody {
   core::BodyState state() const;
 };
 
-/// Is it the user index of a static? Those are negative.
+/// True if the user index is that of a static. User indices of statics are negative.
 inline bool is_static(int user_index) { return user_index < 0; }
 
 class BodyTable {

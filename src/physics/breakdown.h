@@ -7,7 +7,7 @@ class btRigidBody;
 
 namespace aurasim::physics {
 
-/// Has the body broken down? Cheap, because it is called for every body in every state.
+/// True if the body has broken down. The check is cheap, because it is called for every body in every state.
 bool has_broken_down(const btRigidBody& body);
 
 /// Text that says what is wrong with a body that has broken down, with its state.

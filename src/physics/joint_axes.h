@@ -28,7 +28,7 @@ struct JointAxes {
   double break_impulse = 0;  ///< N s or N m s in a substep
   double ball_damping = 0;   ///< see core::BallJoint::damping
 
-  // Only for hinges and sliders:
+  // The members from here on are used only for hinges and sliders.
   std::optional<std::size_t> own;  ///< the axis that the joint leaves free: 2 or 5
   core::JointResistance resistance;
   std::optional<core::JointDrive> drive;

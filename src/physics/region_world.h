@@ -74,7 +74,7 @@ class RegionWorld {
   /// Moves of statics by orders and programs.
   const core::StaticMoves& moves() const;
   core::StaticMoves& moves();
-  /// What happened since the last call: bodies removed by orders or because they broke down; requests that bodies here
+  /// Events since the last call: bodies removed by orders or because they broke down; requests that bodies here
   /// executed, and requests that they declined.
   std::vector<Removal> take_removed();
   std::vector<std::uint64_t> take_applied();

@@ -10,7 +10,8 @@
 
 namespace aurasim::physics {
 
-/// It is empty between two uses, and its Simulation is created at the first use.
+/// A world in which the states that a late body missed are computed. It is empty between two uses, and its Simulation
+/// is created at the first use.
 class ScratchWorld {
  public:
   ScratchWorld(const core::Scene& scene, const Settings& settings, std::shared_ptr<const ShapeSet> shapes,

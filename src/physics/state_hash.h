@@ -1,4 +1,4 @@
-// State hash: tells whether two states of a body are the same to the last bit.
+// State hash: shows whether two states of a body are the same to the last bit.
 #pragma once
 
 #include <cstdint>

@@ -38,7 +38,7 @@ const btCollisionObject& body_of(const btBroadphaseProxy& proxy) {
   return *static_cast<const btCollisionObject*>(proxy.m_clientObject);
 }
 
-/// Is the body clear of the plane? The plane's own bounds are infinite, so a test of bounds does not tell.
+/// True if the body is clear of the plane. The plane's own bounds are infinite, so a test of bounds cannot decide it.
 bool is_above(const btBroadphaseProxy& body, const btCollisionObject& plane) {
   const auto& shape = static_cast<const btStaticPlaneShape&>(*plane.getCollisionShape());
   const btVector3 normal = plane.getWorldTransform().getBasis() * shape.getPlaneNormal();

@@ -8,7 +8,7 @@
 
 namespace aurasim::physics::soft {
 
-// Nothing else may be included here or in soft/kernel*.h: an inline function from elsewhere would exist once for all
+// No other header may be included here or in soft/kernel*.h: an inline function from elsewhere would exist once for all
 // sets.
 
 /// Single precision, also where bodies use double: the kernels compute only changes of pose and velocity since the
