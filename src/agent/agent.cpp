@@ -193,7 +193,8 @@ json Agent::open(const json& asked, const Patience& patience) {
   auto run = std::make_unique<RunLink>(launch, member);
   const bool launches = asked.value("do", "") == "launch";
   if (launches) run->own(std::make_unique<LaunchedRun>(launch_words(asked, file)));
-  // It stays as it is if that fails: a participant that says goodbye may end others (command_line/leave.h).
+  // The link stays if meeting the run fails: a participant that is deleted may end other processes
+  // (command_line/leave.h).
   run_ = std::move(run);
   try {
     run_->meet(patience);

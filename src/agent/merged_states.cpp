@@ -8,7 +8,7 @@ namespace {
 
 /// Limit of states that wait; the oldest are dropped.
 constexpr std::size_t kMostPending = 4096;
-/// The same limit before the first whole state, which has no time limit.
+/// Limit of states that wait before the first whole state, for which they may wait without a time limit.
 constexpr std::size_t kMostBeforeTheFirst = 256;
 
 Observations all_of(const std::map<core::RegionId, core::Observation>& hosted,

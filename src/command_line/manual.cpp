@@ -9,7 +9,7 @@
 namespace aurasim::command_line {
 namespace {
 
-/// Nothing in it is a macro or a hyphen that man may break.
+/// The text without macros, and without hyphens that man may break.
 std::string plain(const std::string& text) {
   std::string out;
   for (const char c : text) {

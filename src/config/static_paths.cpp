@@ -38,8 +38,8 @@ const KeysOf<core::StaticPath>& keys_of_path() {
   return keys;
 }
 
-/// Checks the way between two stops. A turn of more than half a circle cannot be told from the shorter one the other
-/// way round.
+/// Checks the way between two stops. A turn of more than half a circle cannot be distinguished from the
+/// shorter one the other way round.
 void check_way(const Field& field, const core::PathStop& before, const core::PathStop& stop, bool smooth) {
   const double duration_s = stop.at_s - before.at_s;
   if (duration_s < kShortestWay_s) {

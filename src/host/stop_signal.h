@@ -4,7 +4,7 @@
 namespace aurasim::host {
 
 /// From now on SIGINT, SIGTERM and SIGHUP are counted instead of ending the process (SIGHUP not under nohup), and a
-/// closed pipe or a full file is an error of the write. A process that is told to stop after its parent has died is
+/// closed pipe or a full file is an error of the write. A process that is asked to stop after its parent has died is
 /// ended after 30 s, because no launcher is left to end it.
 void catch_stop_signals();
 /// From now on the first SIGTERM asks the process to leave, not to stop: other nodes need its world. With

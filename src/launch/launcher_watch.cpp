@@ -12,7 +12,8 @@ using Clock = std::chrono::steady_clock;
 
 }  // namespace
 
-/// A node that hangs holds all others up. They hold nobody for dead by themselves, so it is ended, and they are told.
+/// Ends the processes of nodes that hang; their deaths are published then. The other nodes wait for a node that hangs,
+/// and do not mark it dead by themselves.
 void Launcher::end_hung_nodes() {
   const auto now = Clock::now();
   life_.look(now);

@@ -45,7 +45,7 @@ class SlotTable {
   core::Step stamp_ = 0;
 };
 
-/// What one client has been sent. A new client has nothing, so its first frame is a key frame.
+/// The state that one client has been sent. A new client has nothing, so its first frame is a key frame.
 class ClientFrames {
  public:
   /// Takes note of a frame. Call it after the table has applied the frame.

@@ -30,7 +30,7 @@ Number take(std::string_view& from) {
   return value;
 }
 
-/// Nothing of a client's name for the file reaches a command line but a plain ending.
+/// Ending of the file's name, if it is plain. No other part of the name that a client gives reaches a command line.
 std::string ending_of(const std::string& name) {
   const std::string ending = std::filesystem::path(name).extension().string();
   const bool plain =

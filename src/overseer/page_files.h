@@ -10,7 +10,7 @@
 
 namespace aurasim::overseer {
 
-/// What the requesting browser supports and already has.
+/// The requesting browser's abilities, and the version of the file that it already has.
 struct FileRequest {
   bool takes_gzip = false;
   std::string etag;  ///< ETag of its copy; empty: it has none

@@ -20,7 +20,7 @@ struct Show {
   bool links = false;
   bool contacts = false;
 };
-/// What the page looks at.
+/// The page's view of the world.
 struct View {
   bool hidden = false;     ///< the page is hidden
   std::optional<Eye> eye;  ///< viewpoint; nothing: the page wants everything exactly

@@ -1,4 +1,4 @@
-// Headers of every answer, which tell the browser what the page may do.
+// Headers of every answer, which limit what the browser lets the page do.
 #pragma once
 
 #include <array>

@@ -23,7 +23,7 @@
 
 namespace aurasim::process {
 
-/// What the lead knows of the run when a command comes.
+/// The lead's knowledge of the run when a command comes.
 struct RunView {
   bool leads = false;
   RunFacts facts;

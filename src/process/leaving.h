@@ -16,7 +16,7 @@ namespace aurasim::process {
 /// True if a spare that was called, or a process that a launcher has started, is there for the region of `own`.
 bool has_successor(const std::vector<messages::SeenStatus>& strangers, const messages::Status& own);
 
-/// What this node keeps and who keeps its parts, when it asks whether it may leave.
+/// The parts that this node keeps and the keepers of its own parts, for the decision whether it may leave.
 struct KeptView {
   core::Step step = 0;                           ///< the node's present state
   bool is_paused = false;                        ///< a paused run has no newer state

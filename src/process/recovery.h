@@ -35,7 +35,7 @@ std::string what_recovery_waits_for(bool is_cut_off, const std::string& question
 /// Why the run ends when no process takes over these regions, whose nodes have died.
 std::string nobody_takes_over(const std::vector<core::RegionId>& vacant);
 
-/// What a node knows of its own world when it decides whether it has to wait.
+/// A node's knowledge of its own world, for the decision whether it has to wait.
 struct OwnWorld {
   core::RegionId region{};
   core::Generation current = 0;        ///< generation that it computes, or is about to begin
@@ -44,11 +44,11 @@ struct OwnWorld {
   bool is_going_back = false;                     ///< all have agreed on `restore`, and not all have begun
 };
 
-/// Why this node must not compute its next state: another node of its generation has died, has left, or waits itself.
-/// Nothing if it may.
+/// Reason why this node must not compute its next state: another node of its generation has died, has left, or waits
+/// itself. Nothing if this node may compute.
 std::optional<std::string> why_stand(const SeenNodes& nodes, const OwnWorld& own);
 
-/// What a restore command means to the process that receives it.
+/// Meaning of a restore command to the process that receives it.
 enum class RestoreMeaning : std::uint8_t {
   kNothing,  ///< the restore is older than what the process knows
   kGoBack,   ///< this process goes back with the other nodes
@@ -72,7 +72,7 @@ struct RecoverySettings {
   core::Step checkpoint_steps = 1;
 };
 
-/// What a waiting node sees of the run.
+/// A waiting node's view of the run.
 struct RecoveryView {
   const SeenNodes& nodes;                  ///< this node's own status included
   const std::set<std::uint64_t>& leaving;  ///< processes that have published that they leave
@@ -83,7 +83,7 @@ struct RecoveryView {
   core::Step step = 0;                     ///< state in which this node waits
 };
 
-/// What a waiting node has to do now.
+/// Acts that a waiting node has to execute now.
 struct RecoveryActs {
   std::vector<core::RegionId> vacant;       ///< regions without a node
   std::vector<core::RegionId> call_spares;  ///< regions for which a spare is to be called, if there is one

@@ -37,11 +37,11 @@ class Restoration {
   bool is_agreed(core::Generation generation) const { return restore_ && restore_->generation > newest(generation); }
   /// The newest generation that this node computes in, or is about to begin.
   core::Generation newest(core::Generation generation) const { return std::max(generation, restoring_); }
-  /// What `restore` means to the process `process` of `region`. `begun`: generation that the process computes in; 0: it
+  /// Meaning of `restore` to the process `process` of `region`. `begun`: generation that the process computes in; 0: it
   /// has no world.
   RestoreMeaning meaning(const messages::RunCommand& restore, core::RegionId region, std::uint64_t process,
                          core::Generation generation, core::Generation begun) const;
-  /// What why_stand() has to know. `silent`: neighbours whose streams have ended; counted only if the node's world is
+  /// The argument of why_stand(). `silent`: neighbours whose streams have ended; counted only if the node's world is
   /// not from before a death (computes_in()).
   OwnWorld own_world(core::RegionId region, core::Generation generation, std::vector<core::RegionId> silent) const;
   /// True if a node that has begun `generation` computes in it, and no later one is about to begin.

@@ -22,7 +22,7 @@ bool all_wait_in(const std::map<core::RegionId, messages::SeenStatus>& nodes, co
 
 class RunChanges {
  public:
-  /// What a change replaces, to be put back if it fails.
+  /// The launch and world that a change replaces, to be put back if it fails.
   struct Before {
     config::Launch launch;
     std::shared_ptr<const core::WorldCut> world;  ///< saved world that the run began with

@@ -18,7 +18,7 @@ namespace aurasim::process {
 
 class WorldGathering {
  public:
-  /// What this node has. All must outlive the gathering.
+  /// The node's own parts that a gathering uses. All must outlive the gathering.
   struct Own {
     const config::Launch& launch;
     const NodeOptions& options;

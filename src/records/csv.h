@@ -127,7 +127,7 @@ inline void split_cells(std::string_view line, std::vector<std::string_view>& ce
   }
 }
 
-/// Reads rows of one type from the lines of a file, whose header tells the places of the columns.
+/// Reads rows of one type from the lines of a file, whose header gives the places of the columns.
 template <class Row>
 class CsvReader {
  public:

@@ -33,7 +33,7 @@ struct IncompleteRegion {
 struct Accounts {
   std::uint64_t bodies = 0;
   std::uint64_t lost = 0;
-  std::uint64_t unaccounted = 0;  ///< bodies that no node has, while records that might tell why are missing
+  std::uint64_t unaccounted = 0;  ///< bodies that no node has, while records that might explain it are missing
   std::uint64_t duplicated = 0;
   std::uint64_t hand_offs = 0;
   std::uint64_t thrashed = 0;
@@ -49,8 +49,8 @@ void clear_report(const std::filesystem::path& folder);
 /// True if any node has written anything into `folder`.
 bool has_records(const std::filesystem::path& folder);
 
-/// Those of the regions 0 to `regions` - 1 whose records in `folder` do not reach the run's end, or the state where the
-/// run broke off.
+/// Returns the regions, of 0 to `regions` - 1, whose records in `folder` do not reach the run's end, or the state where
+/// the run broke off.
 std::vector<core::RegionId> regions_without_end(const std::filesystem::path& folder, std::size_t regions);
 
 /// Reserves disk space for the summary, so that it can be written even when the disk has become full. Throws

@@ -149,8 +149,8 @@ std::optional<WireGuid> guid_in(WireCursor& value) {
 }
 
 /// True for parameters that Fast DDS would act on and that no run uses. Foreign type objects end the process that reads
-/// them (eProsima/Fast-DDS #3296), filters are compiled and run in the writer, shared memory is off. Types are told
-/// apart by their names, and by the version in every message.
+/// them (eProsima/Fast-DDS #3296), filters are compiled and run in the writer, shared memory is off. Types are
+/// distinguished by their names, and by the version in every message.
 bool is_hidden(std::uint16_t pid, ListKind kind) {
   switch (pid) {
     case kTypeId:

@@ -50,7 +50,7 @@ Grants grants_of_node(std::optional<core::RegionId> region) {
   return grants;
 }
 
-/// Rights of whoever is not a node. `parties`: set of topics::Party.
+/// Rights of a process that is not a node. `parties`: set of topics::Party.
 Grants grants_of_others(std::uint8_t parties) {
   Grants grants;
   for (const Topic& topic : topics::all()) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::chrono::days kOneRun{30};
 
-/// What is wrong with keys is wrong with what the user has given us.
+/// Turns a fault of keys into an error of the user's input, because the user has given the keys.
 template <class Work>
 auto with_bad_keys_told(Work&& work) {
   try {

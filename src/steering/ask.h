@@ -1,6 +1,6 @@
-// What a run can be asked. Every client of a run (`aurasim send`, the viewer's page, the client library) says it as the
-// same JSON object, {"kind": "impulse", "body": 3, "J": [0, 0, 20]}. asks() declares all kinds and fields once:
-// readers, refusals, command-line options, help and docs/commands.md all come from that table.
+// The asks: what clients can request of a run. Every client (`aurasim send`, the viewer's page, the client library)
+// sends an ask as the same JSON object, {"kind": "impulse", "body": 3, "J": [0, 0, 20]}. asks() declares all kinds and
+// fields once: readers, refusals, command-line options, help and docs/commands.md all come from that table.
 #pragma once
 
 #include <cstdint>
@@ -106,10 +106,10 @@ Ask read_ask(const nlohmann::json& json, MeshFiles files);
 /// Replaces the static's name by its id. Throws BadAsk if `scene` has no static of this name or number.
 void look_up_static(Ask& ask, const core::Scene& scene);
 
-/// What is wrong with an ask, whoever sent it, with the words of read_ask(); empty: nothing that can be seen without
-/// the run. Nodes check with it what comes over the wire.
+/// Fault of an ask of any client, in the words of read_ask(); empty: none that can be found without the run. Nodes
+/// check the asks that come over the wire with it.
 std::string problem_with(const core::Ask& ask);
-/// What is wrong with a shape of a new body or static; empty: nothing.
+/// Fault of a shape of a new body or static; empty: none.
 std::string problem_with_shape(const core::Shape& shape, bool is_body);
 
 /// True for asks that change the world or its course. Only rays do not.

@@ -32,7 +32,7 @@ std::string first_of(std::initializer_list<std::string> problems) {
   return {};
 }
 
-/// What is wrong with the declared sizes of a shape. A mesh has none.
+/// Fault of the declared sizes of a shape. A mesh declares no sizes.
 struct SizeProblem {
   std::string path;
 

@@ -7,7 +7,7 @@
 
 namespace aurasim::steering {
 
-/// What the field may be, e.g. "0.001 to 1e+06 kg".
+/// Text of the values that the field allows, e.g. "0.001 to 1e+06 kg".
 std::string allowed(const Field& field);
 
 /// The refusal of a value; empty: it is in the field's range. `path`: the kind of the ask, and of the shape within it.

@@ -70,7 +70,7 @@ std::uint64_t CommandClient::send(core::Command command) {
 }
 
 void CommandClient::accept(const core::CommandReply& reply, UnderWay& under_way) {
-  if (under_way.accepted) return;  // told again
+  if (under_way.accepted) return;  // a repeated reply
   Delivery& delivery = under_way.delivery;
   under_way.accepted = true;
   under_way.deadline = Clock::now() + (under_way.changes_the_run ? Clock::duration(kPatienceForChanges)
@@ -106,7 +106,7 @@ void CommandClient::note(const core::CommandReply& reply, UnderWay& under_way) {
       return;
     case core::Outcome::kSeen:
       if (delivery.is_save) accept(reply, under_way);  // a saved part implies acceptance, whose reply may be lost
-      if (std::ranges::find(under_way.answered, reply.source) != under_way.answered.end()) return;  // told again
+      if (std::ranges::find(under_way.answered, reply.source) != under_way.answered.end()) return;  // a repeated reply
       under_way.answered.push_back(reply.source);
       delivery.at_step = std::max(delivery.at_step, reply.at_step);
       if (delivery.is_save) delivery.files.push_back(reply.text);

@@ -71,7 +71,7 @@ std::string first_problem_of(std::initializer_list<std::string> problems) {
   return {};
 }
 
-/// What this run, in its present state, has against an ask that is sound in itself.
+/// Reason why this run, in its present state, refuses an ask that is sound in itself.
 struct ProblemOfRun {
   const CommandContext& c;
 

@@ -44,11 +44,11 @@ enum class Division : std::uint8_t {
   kBySourceAndUser,  ///< region/<source>/observer/<client>
 };
 
-/// Who publishes or reads; a process with the key of a recorder reads everything.
+/// Kinds of processes that publish or read; a process with the key of a recorder reads everything.
 enum Party : std::uint8_t {
   kNodes = 1,
   kOperators = 2,  ///< programs and people that ask something of the run
-  kViewers = 4,    ///< whatever observes the run; operators among them
+  kViewers = 4,    ///< programs that observe the run; operators among them
 };
 
 struct Topic {
