@@ -134,8 +134,8 @@ OwnParticipant join(const Settings& settings, Profiles& profiles, const std::sha
 }  // namespace
 
 struct Ros2Bus::Impl {
-  struct Telling {
-    explicit Telling(Wakeup& wakeup) : watch(wakeup) {}
+  struct Publication {
+    explicit Publication(Wakeup& wakeup) : watch(wakeup) {}
 
     void write(void* message) const { writer->write(message, HANDLE_NIL); }
     bool is_wanted() const { return !watch.readers().empty(); }
@@ -143,8 +143,8 @@ struct Ros2Bus::Impl {
     WriterWatch watch;
     DataWriter* writer = nullptr;
   };
-  struct Hearing {
-    explicit Hearing(Wakeup& wakeup) : watch(wakeup) {}
+  struct Subscription {
+    explicit Subscription(Wakeup& wakeup) : watch(wakeup) {}
 
     ReaderWatch watch;
     DataReader* reader = nullptr;
@@ -156,18 +156,18 @@ struct Ros2Bus::Impl {
     subscriber = participant->create_subscriber(eprosima::fastdds::dds::SUBSCRIBER_QOS_DEFAULT);
     if (publisher == nullptr || subscriber == nullptr)
       throw DdsError("cannot create a publisher and a subscriber in ROS's DDS domain (ros2.domain)");
-    tell("/clock", kRos2Clock, "ros2_clock_writer", clock);
-    tell("/tf", kRos2Tf, "ros2_tf_writer", tf);
-    tell("/joint_states", kRos2JointState, "ros2_joint_states_writer", joints);
+    advertise("/clock", kRos2Clock, "ros2_clock_writer", clock);
+    advertise("/tf", kRos2Tf, "ros2_tf_writer", tf);
+    advertise("/joint_states", kRos2JointState, "ros2_joint_states_writer", joints);
     for (const std::string& name : settings.cmd_vel) subscribe(ros2_cmd_vel_topic(name));
   }
 
   ~Impl() {
     const auto stopped = guard->delivery().stop();
-    for (const Telling* telling : {&clock, &tf, &joints}) {
-      if (telling->writer != nullptr) telling->writer->set_listener(nullptr);
+    for (const Publication* publication : {&clock, &tf, &joints}) {
+      if (publication->writer != nullptr) publication->writer->set_listener(nullptr);
     }
-    for (const auto& hearing : drivers) hearing->reader->set_listener(nullptr);
+    for (const auto& subscription : drivers) subscription->reader->set_listener(nullptr);
   }
 
   Topic& topic(const std::string& name, const Ros2Type& type) {
@@ -177,25 +177,26 @@ struct Ros2Bus::Impl {
     return *made;
   }
 
-  void tell(const std::string& name, const Ros2Type& type, const char* profile, Telling& telling) {
+  void advertise(const std::string& name, const Ros2Type& type, const char* profile, Publication& publication) {
     Topic& of_ros = topic(name, type);
     auto qos = profiles.writer(*publisher, profile);
     qos.user_data().setValue(ros2_user_data(type));
     const auto stopped = guard->delivery().stop();
-    telling.writer = publisher->create_datawriter(&of_ros, qos, &telling.watch, StatusMask::publication_matched());
-    if (telling.writer == nullptr) throw DdsError(fmt::format("cannot create the writer of {} of ROS", name));
+    publication.writer =
+        publisher->create_datawriter(&of_ros, qos, &publication.watch, StatusMask::publication_matched());
+    if (publication.writer == nullptr) throw DdsError(fmt::format("cannot create the writer of {} of ROS", name));
   }
 
   void subscribe(const std::string& name) {
     Topic& of_ros = topic(name, kRos2Twist);
     auto qos = profiles.reader(*subscriber, "ros2_cmd_vel_reader");
     qos.user_data().setValue(ros2_user_data(kRos2Twist));
-    auto hearing = std::make_unique<Hearing>(wakeup);
+    auto subscription = std::make_unique<Subscription>(wakeup);
     const auto stopped = guard->delivery().stop();
-    hearing->reader = subscriber->create_datareader(&of_ros, qos, &hearing->watch,
-                                                    StatusMask::data_available() << StatusMask::subscription_matched());
-    if (hearing->reader == nullptr) throw DdsError(fmt::format("cannot create the reader of {} of ROS", name));
-    drivers.push_back(std::move(hearing));
+    subscription->reader = subscriber->create_datareader(
+        &of_ros, qos, &subscription->watch, StatusMask::data_available() << StatusMask::subscription_matched());
+    if (subscription->reader == nullptr) throw DdsError(fmt::format("cannot create the reader of {} of ROS", name));
+    drivers.push_back(std::move(subscription));
   }
 
   void take(std::size_t listener, std::vector<Ros2Twist>& taken) {
@@ -219,9 +220,9 @@ struct Ros2Bus::Impl {
   Wakeup wakeup;  // no thread waits on it: a node polls before each state
   std::shared_ptr<rtps::DatagramGuard> guard = std::make_shared<rtps::DatagramGuard>();
   Profiles profiles;
-  Telling clock{wakeup}, tf{wakeup}, joints{wakeup};
-  std::vector<std::unique_ptr<Hearing>> drivers;  ///< as Ros2Settings::cmd_vel
-  OwnParticipant participant;                     // destroyed before the listeners of its endpoints
+  Publication clock{wakeup}, tf{wakeup}, joints{wakeup};
+  std::vector<std::unique_ptr<Subscription>> drivers;  ///< as Ros2Settings::cmd_vel
+  OwnParticipant participant;                          // destroyed before the listeners of its endpoints
   Publisher* publisher = nullptr;
   Subscriber* subscriber = nullptr;
   RateLimit<Guid> rates{kSetpointsASecond, kSetpointsAtOnce};
