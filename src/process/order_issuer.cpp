@@ -71,7 +71,8 @@ Issued OrderIssuer::issue(const core::Command& command, const RunFacts& run, con
   statics_ = std::max(statics_, node.scene().statics.size());
   const bool changes_the_run = core::changes_the_run(command.ask);
   if (closed_) return refusal("the run is being changed: send the command again in a moment");
-  if (changes_the_run && !run.complete) return refusal("a node has died: send the command again once its region has a node");
+  if (changes_the_run && !run.complete)
+    return refusal("a node has died: send the command again once its region has a node");
   const core::ClientShape* const own_shape = shape_in(command.ask);
   const steering::CommandContext context{
       launch_, node.scene(), node.current_step(), run.bodies,
