@@ -76,10 +76,10 @@ std::optional<std::string> why_stand(const SeenNodes& nodes, const OwnWorld& own
     if (region == own.region || (own.is_going_back && !is_member())) continue;
     const NodeState state = seen.status.state;
     const std::uint32_t number = core::value_of(region);
+    if (seen.lost && !seen.has_ended()) return fmt::format("the node of region {} has died", number);
     if (!seen.has_ended() && std::ranges::find(own.silent, region) != own.silent.end()) {
       return fmt::format("the node of region {} is silent, or has published an invalid message", number);
     }
-    if (seen.lost && !seen.has_ended()) return fmt::format("the node of region {} has died", number);
     if (!seen.lost && state == NodeState::kFailed) {
       const std::string& why = seen.status.text;
       return fmt::format("the node of region {} has given up{}{}", number, why.empty() ? "" : ": ", why);
