@@ -369,7 +369,7 @@ TEST(ADeafReader, HoldsNobodyUp) {
     ASSERT_TRUE(take_until(zero, [&] { return std::ssize(zero.inbox.auras) == step + 1; })) << step;
   }
   EXPECT_EQ(one.transport.counters().aura.send_failed, 0U);
-  EXPECT_THAT(one.participant.take_said(), Contains(HasSubstr("listens to aura and has acknowledged nothing")));
+  EXPECT_THAT(one.participant.take_said(), Contains(HasSubstr("a reader of topic aura has acknowledged none of")));
   std::filesystem::remove(settings.profiles);
 }
 
