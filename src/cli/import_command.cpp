@@ -8,7 +8,7 @@
 namespace aurasim::cli {
 namespace {
 
-/// With the same words.
+/// Runs aurasim-import in place of this process, with the same command line. Throws if there is none.
 int become_importer() {
   std::vector<std::string> words = host::own_command_line();
   words.at(0) =
