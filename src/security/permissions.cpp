@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <ctime>
+#include <utility>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -18,34 +19,26 @@ constexpr std::array<const char*, kRoleCount> kRoleNames = {"region", "spare", "
 /// Margin on both dates, because Fast DDS reads them in the time zone of its host.
 constexpr std::chrono::hours kTimeZones{24};
 
-using topics::Division;
 using topics::Topic;
 
-/// Partitions in which the node of `region` publishes; without a region: the node of any.
-std::vector<std::string> published_from(const Topic& topic, std::optional<core::RegionId> region) {
-  std::vector<std::string> partitions = {topics::partition_of(topic.id, {.source = region})};
-  if (topic.division == Division::kBySource && topic.by_life) {
+/// Adds the right to use a topic in the partitions of a route, in all lives of the run.
+void grant(std::vector<Grant>& grants, const Topic& topic, const topics::Route& route = {}) {
+  std::vector<std::string> partitions = {topics::partition_of(topic.id, route)};
+  // A pattern that ends in `*` matches the partitions of later lives, too.
+  if (topic.by_life && !partitions.front().ends_with('*')) {
     partitions.push_back(topics::in_later_lives(partitions.front()));
   }
-  if (topic.division == Division::kByPairAndToAll) partitions.emplace_back(topics::kWorldPartition);
-  return partitions;
+  if (topic.division == topics::Division::kByPairAndToAll) partitions.emplace_back(topics::kWorldPartition);
+  grants.push_back({topic.name, std::move(partitions)});
 }
 
-/// Partitions that the node of `region` reads. The regions that it receives from change with the bodies
-/// (docs/decisions/0003), so it may read those of all sources.
-std::vector<std::string> read_by_node(const Topic& topic, std::optional<core::RegionId> region) {
-  std::vector<std::string> partitions = {topics::partition_of(topic.id, {.destination = region})};
-  const bool to_one = topic.division == Division::kByPair || topic.division == Division::kByPairAndToAll;
-  if (to_one) partitions.push_back(topics::in_later_lives(partitions.front()));
-  if (topic.division == Division::kByPairAndToAll) partitions.emplace_back(topics::kWorldPartition);
-  return partitions;
-}
-
+/// Rights of the node of `region`; without a region: of the node of any. It may read from all sources, because the
+/// regions that it receives from change with the bodies (docs/decisions/0003).
 Grants grants_of_node(std::optional<core::RegionId> region) {
   Grants grants;
   for (const Topic& topic : topics::all()) {
-    if (topic.published_by & topics::kNodes) grants.publishes.push_back({topic.name, published_from(topic, region)});
-    if (topic.read_by & topics::kNodes) grants.subscribes.push_back({topic.name, read_by_node(topic, region)});
+    if (topic.published_by & topics::kNodes) grant(grants.publishes, topic, {.source = region});
+    if (topic.read_by & topics::kNodes) grant(grants.subscribes, topic, {.destination = region});
   }
   return grants;
 }
@@ -54,9 +47,8 @@ Grants grants_of_node(std::optional<core::RegionId> region) {
 Grants grants_of_others(std::uint8_t parties) {
   Grants grants;
   for (const Topic& topic : topics::all()) {
-    const std::vector<std::string> partitions = {topics::partition_of(topic.id)};
-    if (topic.published_by & parties) grants.publishes.push_back({topic.name, partitions});
-    if (topic.read_by & parties) grants.subscribes.push_back({topic.name, partitions});
+    if (topic.published_by & parties) grant(grants.publishes, topic);
+    if (topic.read_by & parties) grant(grants.subscribes, topic);
   }
   return grants;
 }
