@@ -169,7 +169,7 @@ const KeysOf<Dds>& dds_keys() {
 }
 
 const KeysOf<Observe>& observe_keys() {
-  static const KeysOf<Observe> keys("observe", "What nodes publish for observers.",
+  static const KeysOf<Observe> keys("observe", "This section sets what nodes publish for observers.",
                                     {
                                         optional("tick_hz", &Observe::tick_hz, number(Range::from_to(1e-3, 1000), "Hz"),
                                                  "how often nodes publish changes for the viewer"),
@@ -203,7 +203,8 @@ const KeysOf<Control>& control_keys() {
 
 const KeysOf<Ros2>& ros2_keys() {
   static const KeysOf<Ros2> keys(
-      "ros2", "What nodes publish to ROS 2 and receive from it, by DDS alone (docs/ros2.md). `{}` is on.",
+      "ros2",
+      "This section sets what nodes publish to ROS 2 and receive from it, by DDS alone (docs/ros2.md). `{}` is on.",
       {
           optional("domain", &Ros2::domain, integer(0, 232), "ROS_DOMAIN_ID of those who listen")
               .otherwise("the run's"),

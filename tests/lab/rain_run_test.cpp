@@ -10,7 +10,7 @@
 namespace aurasim::lab {
 namespace {
 
-/// What the suite scalability does with a launch, for two columns listening to each other.
+/// Does with a launch what the suite scalability does, for two columns listening to each other.
 RainPlace place() {
   RainPlace place;
   place.launch_file = AURASIM_SOURCE_DIR "/launch_configs/columns_rain.yaml";

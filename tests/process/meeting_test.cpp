@@ -1,4 +1,4 @@
-// What a node decides while it meets the others of its run.
+// Tests of what a node decides while it meets the others of its run.
 #include "process/meeting.h"
 
 #include <gtest/gtest.h>

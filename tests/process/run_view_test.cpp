@@ -1,4 +1,4 @@
-// Who leads a run, and what the lead sees of it.
+// Tests of who leads a run, and of what the lead sees of it.
 #include "process/run_view.h"
 
 #include <gtest/gtest.h>

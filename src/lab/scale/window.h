@@ -8,7 +8,7 @@
 
 namespace aurasim::lab {
 
-/// What a node has done since an earlier state.
+/// The work of a node since an earlier state.
 struct Counts {
   std::uint64_t departures = 0;
   std::uint64_t returns = 0;  ///< departures that bring a body back (round_trips.h)

@@ -19,7 +19,7 @@ struct SuiteResults {
   std::vector<Target> targets;  ///< requirements; a run in which one is not met fails
 };
 
-/// What of a suite is to be run.
+/// The parts of a suite that are to be run.
 struct SuitePlan {
   Effort effort = Effort::kQuick;
   std::vector<std::string> only;  ///< names of parts; none: those that belong to the effort
