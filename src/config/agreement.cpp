@@ -224,7 +224,7 @@ void add_settings(const Launch& launch, Digest& d) {
   d.add(launch.tolerances.latency_s);
   d.add(launch.tolerances.frame_s);
   d.bytes(static_cast<std::uint64_t>(launch.aura.radius));
-  d.add(launch.aura.uncertainty);
+  d.add(launch.uncertainty());
   d.bytes(static_cast<std::uint64_t>(launch.survival.on_death));
   d.bytes(static_cast<std::uint64_t>(launch.checkpoint_steps()));
   const core::ControlRules control = launch.control_rules();

@@ -100,7 +100,11 @@ void Field::refuse(std::string_view allowed) const {
 
 void Field::complain(std::string_view message) const { errors_->add(place_, path_, message); }
 
-std::optional<double> Field::number() const { return number(as(Value::Kind::kNumber).range); }
+std::optional<double> Field::number() const {
+  const Range& range = as(Value::Kind::kNumber).range;
+  if (is_text() && value_->has_word(node_->text)) return std::nullopt;
+  return number(range);
+}
 
 std::optional<double> Field::number(const Range& range) const {
   const std::optional<double> value = given() ? parsed<double>(*node_) : std::nullopt;

@@ -18,6 +18,7 @@
 #include "config/scene_file.h"
 #include "config/shipped_files.h"
 #include "core/fnv1a.h"
+#include "core/usual_uncertainty.h"
 
 namespace aurasim::config {
 namespace {
@@ -180,6 +181,8 @@ void read_launch_map(const YamlNode& root, const std::vector<Override>& of_scene
 }
 
 }  // namespace
+
+double Launch::uncertainty() const { return aura.uncertainty.value_or(core::usual_uncertainty(time.sync)); }
 
 bool Launch::redoes() const {
   const bool on = time.redo == Redo::kOn || (time.redo == Redo::kAuto && time.sync == core::SyncMode::kDeterministic);

@@ -40,7 +40,7 @@ struct Tolerances {
 
 struct Aura {
   core::AuraKind radius = core::AuraKind::kSwept;
-  double uncertainty = 0.5;  ///< U of docs/design.md, "Swept auras"
+  std::optional<double> uncertainty;  ///< U of docs/design.md, "Swept auras"; nothing: by time.sync
 };
 
 struct Physics {
@@ -151,6 +151,8 @@ struct Launch {
   double step_s() const { return 1.0 / time.step_hz; }
   /// K of docs/design.md, "Time and lookahead".
   int lookahead() const;
+  /// U of docs/design.md, "Swept auras".
+  double uncertainty() const;
   /// True when every state is checked, and computed again where two bodies touched on two hosts.
   bool redoes() const;
   /// True when the run goes on after a death: it takes another node to keep the dead one's parts.

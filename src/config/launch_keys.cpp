@@ -81,8 +81,10 @@ const KeysOf<Aura>& aura_keys() {
                                            {"swept", core::AuraKind::kSwept}}),
                    "swept: along the path of the body; tight and thesis: a sphere around it, by our and by the thesis' "
                    "formula; none: the control that must fail, with time.redo off"),
-          optional("uncertainty", &Aura::uncertainty, number(Range::from_to(0, 10)),
-                   "U, share of its speed by which a body may leave its foreseen path before that counts as broken"),
+          optional("uncertainty", &Aura::uncertainty, number(Range::from_to(0, 10)).or_word("auto"),
+                   "U, share of its speed by which a body may leave its foreseen path before that counts as broken; "
+                   "auto: 0.5, with sync free_running 1.5")
+              .usual("auto"),
       });
   return keys;
 }

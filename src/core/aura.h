@@ -54,7 +54,7 @@ struct Path {
   bool moves = true;        ///< false: asleep, stays where it is
   double age_steps = 0;     ///< how old the known state is
   double unborn_steps = 0;  ///< the body appears this many steps from now
-  double speed_m_s = 0;     ///< top speed that the body may come to have; scales the uncertainty
+  double speed_m_s = 0;     ///< the stated speed; scales the uncertainty (Aura::speed_of)
   double blur_m = 0;  ///< how far its surface may be from where the path has it, because its aura was sent rounded
 };
 
@@ -82,13 +82,9 @@ class Aura {
   /// Do auras carry a path and a speed for each body, on which the receivers rely?
   virtual bool predicts() const { return false; }
 
-  /// How much faster than its own speed a body that nothing pushes may become: 0.1 m/s; 0.05 m/s asleep. The path holds
-  /// what gravity adds. Kinds with one top speed return the promised V.
-  virtual double calm_speed(bool awake) const = 0;
-  /// The body's own part of its top speed, with which it can push others: its speed and a kick that is ordered, m/s.
-  virtual double own_speed_of(const BodyState& body) const = 0;
-  /// Top speed that a body can have if no other body pushes it, m/s.
-  double speed_of(const BodyState& body) const { return calm_speed(body.awake) + own_speed_of(body); }
+  /// The speed that the body's aura states, m/s: it may leave its path at U times this speed. Kinds with one top speed
+  /// return the promised V.
+  virtual double speed_of(const BodyState& body) const = 0;
 
   /// Do a foreign body and one of ours have to share a host? Looks h K - `fewer_steps` steps ahead from now. `hops` (h)
   /// is the number of regions through which a pull can chain (1 away from corners).

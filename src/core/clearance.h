@@ -1,4 +1,4 @@
-// Questions of core/ to physics/ about prototypes: distances between shapes, sizes, mass and restitution.
+// Questions of core/ to physics/ about prototypes: distances between shapes, and sizes.
 #pragma once
 
 #include <limits>
@@ -7,12 +7,6 @@
 #include "core/ids.h"
 
 namespace aurasim::core {
-
-/// Properties that decide how much of a push a body passes on.
-struct BodyTraits {
-  double mass_kg = 1;
-  double restitution = 1;  ///< restitution of its material, 0 to 1
-};
 
 /// Distance between the real shapes of two bodies. Implemented by physics/ (Bullet's GJK).
 class ClearanceQuery {
@@ -26,9 +20,6 @@ class ClearanceQuery {
 
   /// Radius of the sphere around the body's origin that holds its shape. Metres.
   virtual double bounding_radius(PrototypeId prototype) const = 0;
-
-  /// Default: 1 kg and restitution 1, so that a body passes on all of a push.
-  virtual BodyTraits traits(PrototypeId) const { return {}; }
 };
 
 /// Every body is a point and infinitely far from all others. For the reaches of auras that do not depend on shapes.

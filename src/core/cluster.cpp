@@ -14,7 +14,7 @@ int hops_of(std::uint64_t regions) { return std::clamp(std::popcount(regions), 1
 
 }  // namespace
 
-void Clusters::begin(std::span<Path> paths, std::span<const double> own_m_s, std::span<const std::uint64_t> regions,
+void Clusters::begin(std::span<const Path> paths, std::span<const std::uint64_t> regions,
                      std::span<const Contact> contacts, std::span<const Contact> joints, int hops_each) {
   paths_ = paths;
   hops_each_ = hops_each;
@@ -31,71 +31,13 @@ void Clusters::begin(std::span<Path> paths, std::span<const double> own_m_s, std
   link_ranges_.clear();
   for (int hops = 0; hops <= horizon::kMostHops * hops_each; ++hops) link_ranges_.push_back(aura_.link_range(hops));
   complete_.assign(n, 0);
-  started_.assign(n, 0);
   links_.clear();
   grown_.clear();
-  asked_speed_.assign(n, -1);
   asked_hops_.assign(n, 0);
-  traits_.clear();
-  for (const Path& path : paths) traits_.push_back(traits_of(path.prototype));
-  pushes_.begin(own_m_s, traits_, aura_.rules().uncertainty);
-  if (aura_.warns()) join(contacts, joints);
-  // Clusters near a boundary will be completed anyway. Speeds that are known before the index is built cost less than
-  // later raises.
-  for (std::uint32_t i = 0; i < n; ++i) {
-    if (regions[i] != 0) start_pushes(i);
-  }
-  pushes_.spread(raised_);
-  raised_.clear();
-  for (std::uint32_t i = 0; i < n; ++i) paths_[i].speed_m_s = pushed_speed(i);
   near_.build(paths);
-}
-
-const BodyTraits& Clusters::traits_of(PrototypeId prototype) {
-  for (auto known = static_cast<std::uint32_t>(kinds_.size()); known <= value_of(prototype); ++known) {
-    kinds_.push_back(aura_.clearance().traits(PrototypeId{known}));
-  }
-  return kinds_[value_of(prototype)];
-}
-
-void Clusters::join(std::span<const Contact> contacts, std::span<const Contact> joints) {
-  for (const Contact& c : contacts) {
-    unite(c.a, c.b);
-    pushes_.add(c.a, c.b, false);
-  }
-  for (const Contact& j : joints) {
-    unite(j.a, j.b);
-    pushes_.add(j.a, j.b, true);
-  }
-}
-
-double Clusters::pushed_speed(std::uint32_t i) const {
-  const double push = pushes_.off_path_m_s(i);
-  return aura_.calm_speed(paths_[i].moves || push > Push::kUnfelt_m_s) + push;
-}
-
-/// Starts the pushes of all members of body i's cluster that have not been started.
-void Clusters::start_pushes(std::uint32_t i) {
-  if (started_[i]) return;
-  for_each_member(i, [this](std::uint32_t j) {
-    if (!started_[j]) pushes_.start(j);
-    started_[j] = 1;
-  });
-}
-
-/// Spreads pushes. Bodies that became faster have to look further.
-void Clusters::take_raised() {
-  pushes_.spread(raised_);
-  for (const std::uint32_t i : raised_) {
-    const double speed = pushed_speed(i);
-    Path& path = paths_[i];
-    if (speed <= path.speed_m_s) continue;
-    near_.raise(i, path.pose.p_WB, path.speed_m_s, speed);
-    path.speed_m_s = speed;
-    grown_.push_back(i);
-    to_ask_.emplace(speed, i);
-  }
-  raised_.clear();
+  if (!aura_.warns()) return;
+  for (const Contact& c : contacts) unite(c.a, c.b);
+  for (const Contact& j : joints) unite(j.a, j.b);
 }
 
 void Clusters::set_regions(std::uint32_t cluster, std::uint64_t regions) {
@@ -142,25 +84,18 @@ std::uint32_t Clusters::unite(std::uint32_t a, std::uint32_t b) {
 }
 
 void Clusters::ask_members(std::uint32_t i) {
-  for_each_member(i, [this](std::uint32_t j) { to_ask_.emplace(speed(j), j); });
+  for_each_member(i, [this](std::uint32_t j) { to_ask_.push_back(j); });
 }
 
 void Clusters::complete(std::uint32_t i) {
   if (complete_[of(i)]) return;
   complete_[of(i)] = 1;
   if (!aura_.warns()) return;
-  start_pushes(i);
-  take_raised();
   ask_members(i);
-  look_on();
-}
-
-void Clusters::look_on() {
   while (!to_ask_.empty()) {
-    const std::uint32_t j = to_ask_.top().second;
-    to_ask_.pop();
-    if (asked_speed_[j] >= speed(j) && asked_hops_[j] >= hops(j)) continue;
-    asked_speed_[j] = speed(j);
+    const std::uint32_t j = to_ask_.back();
+    to_ask_.pop_back();
+    if (asked_hops_[j] >= hops(j)) continue;
     asked_hops_[j] = hops(j);
     Progress::mark();
     look_around(j);
@@ -168,41 +103,31 @@ void Clusters::look_on() {
 }
 
 void Clusters::look_around(std::uint32_t i) {
-  const double speed_here = speed(i);
   const int hops_here = hops(i);
-  const double enough = pushes_.raises_none_above(i);
   const Path& path = paths_[i];
   const Range& widest = link_ranges_[static_cast<std::size_t>(most_hops_)];
   linked_.clear();
   const auto ask = [&](std::uint32_t j) {
-    if (of(j) == of(i) && (j == i || pushes_.speed(j) >= enough || !pushes_.raises(i, j))) return;
+    if (of(j) == of(i)) return;
     const int hops_both = std::max(hops_here, hops(j));
-    const double range = link_ranges_[static_cast<std::size_t>(hops_both)].at(speed_here + speed(j)) + path.radius_m +
-                         paths_[j].radius_m;
+    const double range = link_ranges_[static_cast<std::size_t>(hops_both)].at(path.speed_m_s + paths_[j].speed_m_s) +
+                         path.radius_m + paths_[j].radius_m;
     if ((path.pose.p_WB - paths_[j].pose.p_WB).squaredNorm() > range * range) return;
     if (aura_.linked(path, paths_[j], hops_both)) linked_.push_back(j);
   };
-  const auto range_at = [&](double speed_m_s) { return widest.at(speed_here + speed_m_s); };
+  const auto range_at = [&](double speed_m_s) { return widest.at(path.speed_m_s + speed_m_s); };
   near_.for_each_near(path.pose.p_WB, path.radius_m, range_at, ask);
   for (const std::uint32_t j : linked_) link(i, j);
 }
 
-/// Bodies i and j may touch: unites their clusters and lets pushes pass between them.
+/// Bodies i and j may touch: unites their clusters. Members that now have more hops, or that are new, are asked.
 void Clusters::link(std::uint32_t i, std::uint32_t j) {
   const std::uint32_t theirs = of(j);
-  if (theirs != of(i)) {
-    const bool more_regions = (regions_[theirs] & ~regions_[of(i)]) != 0;
-    if (!more_regions) ask_members(j);
-    unite(i, j);
-    if (more_regions) ask_members(i);
-    start_pushes(j);
-  } else if (!pushes_.raises(i, j)) {
-    return;
-  }
-  pushes_.add(i, j, false);
-  pushes_.start(i);
-  pushes_.start(j);
-  take_raised();
+  if (theirs == of(i)) return;
+  const bool more_regions = (regions_[theirs] & ~regions_[of(i)]) != 0;
+  if (!more_regions) ask_members(j);
+  unite(i, j);
+  if (more_regions) ask_members(i);
 }
 
 }  // namespace aurasim::core

@@ -1,18 +1,14 @@
 // Clusters: bodies of one host that must move together, because they touch, are jointed, or may touch on their
-// predicted paths. A body's top speed, from all that may push it, decides how far around its path others are looked
-// for. Each body found there may push it in turn, so speeds and clusters grow until neither changes. Only clusters for
-// which complete() is called are completed.
+// predicted paths. Only clusters for which complete() is called are completed.
 #pragma once
 
 #include <cstdint>
-#include <queue>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "core/aura.h"
 #include "core/near_index.h"
-#include "core/pushes.h"
 
 namespace aurasim::core {
 
@@ -20,12 +16,11 @@ class Clusters {
  public:
   explicit Clusters(const Aura& aura) : aura_(aura) {}
 
-  /// Starts a step: one cluster per group of bodies connected by `contacts` or `joints`. `own_m_s` are
-  /// Aura::own_speed_of each body; `regions[i]` has a bit for every other region in reach of body i. The caller owns
-  /// `paths`; their speed_m_s is kept up to date here. `hops_each`: how often a pull may have to come through each
-  /// region (2 while Ranks::changing(), else 1).
-  void begin(std::span<Path> paths, std::span<const double> own_m_s, std::span<const std::uint64_t> regions,
-             std::span<const Contact> contacts, std::span<const Contact> joints, int hops_each = 1);
+  /// Starts a step: one cluster per group of bodies connected by `contacts` or `joints`. `regions[i]` has a bit for
+  /// every other region in reach of body i. The caller owns `paths`. `hops_each`: how often a pull may have to come
+  /// through each region (2 while Ranks::changing(), else 1).
+  void begin(std::span<const Path> paths, std::span<const std::uint64_t> regions, std::span<const Contact> contacts,
+             std::span<const Contact> joints, int hops_each = 1);
 
   /// Notes that `regions` (bits) have bodies near body i. Returns false if that was known; otherwise the cluster has to
   /// be completed again.
@@ -36,14 +31,12 @@ class Clusters {
 
   /// Label of the cluster of body i: the index of one of its members.
   std::uint32_t of(std::uint32_t i) const { return label_[i]; }
-  /// Top speed at which body i may leave its path while a message about it is under way, m/s.
-  double speed(std::uint32_t i) const { return paths_[i].speed_m_s; }
   /// Number of other regions through which a pull on this cluster can chain (docs/design.md, "Who leaves"): those
   /// in reach, by their territory or by a body of theirs; at least 1.
   int hops(std::uint32_t i) const { return hops_[of(i)]; }
   /// The largest hops() of any cluster.
   int most_hops() const { return most_hops_; }
-  /// Replaces `grown` by the bodies whose speed or hops have grown since the last call; some appear more than once.
+  /// Replaces `grown` by the bodies whose hops have grown since the last call; some appear more than once.
   void take_grown(std::vector<std::uint32_t>& grown) {
     grown.clear();
     std::swap(grown, grown_);
@@ -70,40 +63,27 @@ class Clusters {
 
  private:
   std::uint32_t unite(std::uint32_t a, std::uint32_t b);
-  const BodyTraits& traits_of(PrototypeId prototype);
-  void join(std::span<const Contact> contacts, std::span<const Contact> joints);
   void link(std::uint32_t i, std::uint32_t j);
-  void start_pushes(std::uint32_t i);
-  void take_raised();
-  double pushed_speed(std::uint32_t i) const;
   void look_around(std::uint32_t i);
-  void look_on();
   void ask_members(std::uint32_t i);
   void set_regions(std::uint32_t cluster, std::uint64_t regions);
   void note_more_hops(std::uint32_t i, int hops);
 
   const Aura& aura_;
-  std::span<Path> paths_;
+  std::span<const Path> paths_;
   int hops_each_ = 1;
   int most_hops_ = 1;
   std::vector<std::uint32_t> grown_;
   std::vector<Range> link_ranges_;  ///< by hops
   NearIndex near_;
-  Pushes pushes_;
   std::vector<std::uint32_t> label_, next_, size_;
   std::vector<std::uint64_t> regions_;
   std::vector<int> hops_;
   std::vector<std::uint8_t> complete_;
-  std::vector<std::uint8_t> started_;  ///< by body: pushes_.start() has been called for it
   std::vector<Contact> links_;
-  std::vector<double> asked_speed_;  ///< by body: its speed (and below its hops) at the last look_around()
-  std::vector<int> asked_hops_;
-  /// fastest first, because fast bodies push slower ones
-  std::priority_queue<std::pair<double, std::uint32_t>> to_ask_;
+  std::vector<int> asked_hops_;  ///< by body: its hops at the last look_around(); 0: there was none
+  std::vector<std::uint32_t> to_ask_;
   std::vector<std::uint32_t> linked_;
-  std::vector<std::uint32_t> raised_;  ///< bodies that may have become faster
-  std::vector<BodyTraits> traits_;     ///< by body
-  std::vector<BodyTraits> kinds_;      ///< by prototype; filled by traits_of()
 };
 
 template <class Visit>

@@ -37,7 +37,7 @@ void InterestMatching::look(const Snapshot& snapshot, std::span<const Neighbour>
   gather_foreign(snapshot, neighbours, ghosts);
   mark_regions(hops_each);
   bring_together(snapshot);
-  clusters_.begin(paths_, own_speeds_, regions_, snapshot.contacts, joined_, hops_each);
+  clusters_.begin(paths_, regions_, snapshot.contacts, joined_, hops_each);
   complete_near_boundaries();
   pair_up();
   widest_band_m_ = band(top_speed(), clusters_.most_hops() + kHomewardHops);
@@ -48,14 +48,11 @@ void InterestMatching::measure(const Snapshot& snapshot) {
   const auto n = snapshot.bodies.size();
   ids_.resize(n);
   paths_.resize(n);
-  speeds_.resize(n);
-  own_speeds_.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     const BodyState& body = snapshot.bodies[i];
     ids_[i] = body.id;
-    own_speeds_[i] = aura_.own_speed_of(body);
-    speeds_[i] = aura_.calm_speed(body.awake) + own_speeds_[i];
     paths_[i] = path_of(body, snapshot.step, aura_.clearance());
+    paths_[i].speed_m_s = aura_.speed_of(body);
   }
 }
 
@@ -93,13 +90,13 @@ void InterestMatching::mark_regions(int hops_each) {
   near_.clear();
   double top_speed = NearIndex::kSlow;
   for (std::size_t i = 0; i < n; ++i) {
-    top_speed = std::max(top_speed, speeds_[i]);
+    top_speed = std::max(top_speed, paths_[i].speed_m_s);
     others_top_radius_ = std::max(others_top_radius_, paths_[i].radius_m);
   }
   const double slow_band = band(NearIndex::kSlow, hops_each + kHomewardHops);
   const double fast_band = band(top_speed, hops_each + kHomewardHops);
   for (std::uint32_t i = 0; i < n; ++i) {
-    const bool slow = speeds_[i] <= NearIndex::kSlow;
+    const bool slow = paths_[i].speed_m_s <= NearIndex::kSlow;
     const Vec3& p = paths_[i].pose.p_WB;
     if (vicinity_.deep_inside(p, (slow ? slow_band : fast_band) + paths_[i].radius_m)) continue;
     near_.push_back(i);
@@ -143,8 +140,8 @@ void InterestMatching::bring_together(const Snapshot& snapshot) {
   }
 }
 
-/// Finds foreign auras and our bodies near them. A cluster that is completed here may turn out faster and then reach
-/// further. So bodies that have grown are looked at again until none grows.
+/// Finds foreign auras and our bodies near them. A cluster that is completed here may turn out to have more hops and
+/// then reach further. So bodies that have grown are looked at again until none grows.
 void InterestMatching::pair_up() {
   noticed_.assign(paths_.size(), 0);
   noticed_by_.assign(paths_.size(), 0);
@@ -248,7 +245,7 @@ void InterestMatching::for_each_foreign_near(std::uint32_t own, Visit&& visit) c
   foreign_.near().for_each_near(path.pose.p_WB, path.radius_m, range, visit);
 }
 
-/// Looks again for foreign bodies near body `own`, which is faster or has more hops than before.
+/// Looks again for foreign bodies near body `own`, which has more hops than before.
 void InterestMatching::notice_again(std::uint32_t own) {
   const Path& path = paths_[own];
   const int hops = clusters_.hops(own) + kHomewardHops;
@@ -320,7 +317,7 @@ bool InterestMatching::must_be_announced(std::uint32_t i) const {
   if (noticed_[i]) return true;
   const Path& path = paths_[i];
   if (vicinity_.deep_inside(path.pose.p_WB, widest_band_m_ + path.radius_m)) return false;
-  const double reach = band(clusters_.speed(i), clusters_.hops(i) + kHomewardHops) + path.radius_m;
+  const double reach = band(path.speed_m_s, clusters_.hops(i) + kHomewardHops) + path.radius_m;
   return !vicinity_.deep_inside(path.pose.p_WB, reach);
 }
 

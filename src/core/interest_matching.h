@@ -107,7 +107,6 @@ class InterestMatching {
   Clusters clusters_;
   std::vector<BodyId> ids_;
   std::vector<Path> paths_;
-  std::vector<double> speeds_, own_speeds_;
   std::vector<std::uint64_t> regions_;
   std::vector<RegionId> live_;  ///< neighbours that can take a cluster, ascending
   ForeignBodies foreign_;

@@ -17,25 +17,17 @@ namespace aurasim::core {
 
 class NearIndex {
  public:
-  /// Bodies that can become no faster than this are slow (m/s).
+  /// Bodies that state no higher speed than this are slow (m/s).
   static constexpr double kSlow = 3.0;
 
-  /// Indexes `paths` with their present speed_m_s. A speed that grows later is passed to raise().
+  /// Indexes `paths` by their speed_m_s.
   void build(std::span<const Path> paths);
-
-  /// Raises the speed of body `i`, which is at `p`.
-  void raise(std::uint32_t i, const Vec3& p, double before_m_s, double now_m_s) {
-    top_speed_ = std::max(top_speed_, now_m_s);
-    const std::size_t gear = gear_of(now_m_s);
-    gears_[gear].top_m_s = std::max(gears_[gear].top_m_s, now_m_s);
-    if (gear > gear_of(before_m_s)) gears_[gear].grid.insert(i, p);
-  }
 
   double top_speed() const { return top_speed_; }
   double top_radius() const { return top_radius_; }
 
   /// Calls `visit(index)` for at least every body whose bounding sphere comes within `range_at(its speed)` of the box
-  /// [lo, hi]. `range_at` gives metres for m/s and must not fall as the speed grows. Some bodies are visited twice.
+  /// [lo, hi]. `range_at` gives metres for m/s and must not fall as the speed grows.
   template <class RangeAt, class Visit>
   void for_each_near(const Vec3& lo, const Vec3& hi, RangeAt&& range_at, Visit&& visit) const {
     for (const Gear& gear : gears_) {

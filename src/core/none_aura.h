@@ -12,8 +12,7 @@ class NoneAura final : public Aura {
   NoneAura(const AuraRules& rules, const ClearanceQuery& clearance) : Aura(rules, clearance) {}
 
   bool warns() const override { return false; }
-  double calm_speed(bool) const override { return rules().top_speed_m_s; }
-  double own_speed_of(const BodyState&) const override { return 0; }
+  double speed_of(const BodyState&) const override { return rules().top_speed_m_s; }
   bool meets(const Path&, const Path&, int, int) const override { return false; }
   bool linked(const Path&, const Path&, int) const override { return false; }
   bool meets_ghost(const Path&, const Path&, int, int) const override { return false; }
@@ -31,8 +30,7 @@ class BlindAura final : public Aura {
  public:
   BlindAura(const AuraRules& rules, const ClearanceQuery& clearance) : Aura(rules, clearance) {}
 
-  double calm_speed(bool) const override { return 0; }
-  double own_speed_of(const BodyState& body) const override { return body.v_WB.norm() + body.coming_kick_m_s; }
+  double speed_of(const BodyState& body) const override { return body.v_WB.norm() + body.coming_kick_m_s; }
   bool meets(const Path& foreign, const Path& own, int, int) const override { return touch(foreign, own); }
   bool linked(const Path& a, const Path& b, int) const override { return touch(a, b); }
   bool meets_ghost(const Path& ghost, const Path& own, int, int) const override { return touch(ghost, own); }

@@ -76,12 +76,12 @@ void Projection::move(Track& track, PhaseEvent event) {
   track.phase = *next;
 }
 
-AuraRecord Projection::describe(const BodyState& body, std::uint32_t i, const Clusters& clusters, Step stamp) const {
+AuraRecord Projection::describe(const BodyState& body, Step stamp) const {
   AuraRecord aura = aura_record(body, vicinity_.self, stamp);
   if (!aura_.predicts() && !aura_.rules().redo) {  // other nodes use positions and sizes only
     aura.v_WB = aura.w_WB = Vec3::Zero();
   }
-  aura.speed_m_s = clusters.speed(i);
+  aura.speed_m_s = aura_.speed_of(body);
   return aura;
 }
 
@@ -101,8 +101,7 @@ void Projection::classify(const Snapshot& snapshot, const InterestMatching& matc
   }
 }
 
-void Projection::publish(const Snapshot& snapshot, const InterestMatching& matching, AuraBatch& batch,
-                         ViolationLog& violations, bool full) {
+void Projection::publish(const Snapshot& snapshot, AuraBatch& batch, ViolationLog& violations, bool full) {
   projecting_ = 0;
   for (std::uint32_t i = 0; i < tracks_.size(); ++i) {
     if (i + kPrefetchDistance < tracks_.size() && tracks_[i + kPrefetchDistance].projected()) {
@@ -116,7 +115,7 @@ void Projection::publish(const Snapshot& snapshot, const InterestMatching& match
       ++projecting_;
       check_promise(track, body, snapshot.step, violations);
       check_span(track, body, snapshot.step, violations);
-      publish(track, describe(body, i, matching.clusters(), snapshot.step), batch, full);
+      publish(track, describe(body, snapshot.step), batch, full);
     } else if (track.projected()) {
       ++counters_.deleted;
       track.published.reset();
@@ -131,11 +130,11 @@ void Projection::publish(const Snapshot& snapshot, const InterestMatching& match
   }
 }
 
-void Projection::depart(const BodyState& body, std::uint32_t i, const Clusters& clusters, RegionId destination,
-                        PhaseEvent why, AuraBatch& batch) {
+void Projection::depart(const BodyState& body, std::uint32_t i, RegionId destination, PhaseEvent why,
+                        AuraBatch& batch) {
   Track& track = tracks_[i];
   move(track, why);
-  AuraRecord ghost = describe(body, i, clusters, batch.stamp);
+  AuraRecord ghost = describe(body, batch.stamp);
   ghost.host = destination;
   ghost.epoch = body.epoch + 1;
   ghost.flags |= kAuraGhost;

@@ -56,12 +56,10 @@ class Projection {
 
   /// Writes creations, updates and deletions of the bodies that stay into `batch`; `full`: writes all projected auras,
   /// not only changed ones.
-  void publish(const Snapshot& snapshot, const InterestMatching& matching, AuraBatch& batch, ViolationLog& violations,
-               bool full);
+  void publish(const Snapshot& snapshot, AuraBatch& batch, ViolationLog& violations, bool full);
 
   /// Body i leaves for `destination`. Its last aura stays published as a ghost for 2K steps.
-  void depart(const BodyState& body, std::uint32_t i, const Clusters& clusters, RegionId destination, PhaseEvent why,
-              AuraBatch& batch);
+  void depart(const BodyState& body, std::uint32_t i, RegionId destination, PhaseEvent why, AuraBatch& batch);
 
   std::span<const AuraRecord> ghosts() const { return ghosts_; }
   std::size_t projecting() const { return projecting_; }
@@ -74,7 +72,7 @@ class Projection {
   void take_back_gone(AuraBatch& batch);
   void keep_newest_ghosts();
   void expire_ghosts(const Snapshot& snapshot, AuraBatch& batch);
-  AuraRecord describe(const BodyState& body, std::uint32_t i, const Clusters& clusters, Step stamp) const;
+  AuraRecord describe(const BodyState& body, Step stamp) const;
   void check_promise(Track& track, const BodyState& body, Step now, ViolationLog& violations);
   void check_speed(Track& track, const BodyState& body, Step now, ViolationLog& violations);
   void check_span(Track& track, const BodyState& body, Step now, ViolationLog& violations);

@@ -160,7 +160,7 @@ const std::vector<Departure>& Protocol::observe(const Snapshot& snapshot) {
   note_who_waits(snapshot);
   decide(snapshot);
   claimer_.reconsider(snapshot.step, {largest_cluster_, largest_guest_}, ranks_);
-  projection_.publish(snapshot, matching_, outbox_.aura, violations_, full_);
+  projection_.publish(snapshot, outbox_.aura, violations_, full_);
   last_violation_step_ = std::max(last_violation_step_, violations_.last_step());
   fill_header();
   return departing_;
@@ -256,14 +256,13 @@ std::vector<RegionId> assign_hosts(const RegionMap& map, const AuraRules& rules,
   const std::unique_ptr<const Aura> aura = make_aura(early, clearance);
   if (!aura->warns() || map.size() == 1) return hosts;
   std::vector<Path> paths;
-  std::vector<double> own_speeds;
   for (const BodyState& body : scene.bodies) {
     paths.push_back(path_of(body, scene.step, clearance));
-    own_speeds.push_back(aura->own_speed_of(body));
+    paths.back().speed_m_s = aura->speed_of(body);
   }
   const std::vector<std::uint64_t> no_regions(scene.bodies.size(), 0);
   Clusters clusters(*aura);
-  clusters.begin(paths, own_speeds, no_regions, scene.contacts, scene.joints);
+  clusters.begin(paths, no_regions, scene.contacts, scene.joints);
   for (std::uint32_t i = 0; i < hosts.size(); ++i) clusters.complete(i);
   for (std::uint32_t i = 0; i < hosts.size(); ++i) {
     RegionId lowest = hosts[i];

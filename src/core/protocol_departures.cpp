@@ -109,8 +109,8 @@ void Protocol::depart(std::uint32_t i, RegionId destination, HandOffReason reaso
   const bool collision = reason == HandOffReason::kAuraCollision;
   matching_.clusters().for_each_member(i, [&](std::uint32_t j) {
     departure.bodies.push_back(snapshot.bodies[j].id);
-    projection_.depart(snapshot.bodies[j], j, matching_.clusters(), destination,
-                       collision ? PhaseEvent::kAuraHit : PhaseEvent::kIsland, outbox_.aura);
+    projection_.depart(snapshot.bodies[j], j, destination, collision ? PhaseEvent::kAuraHit : PhaseEvent::kIsland,
+                       outbox_.aura);
   });
   std::sort(departure.bodies.begin(), departure.bodies.end());
 }

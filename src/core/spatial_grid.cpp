@@ -7,7 +7,6 @@ namespace aurasim::core {
 void SpatialGrid::clear(double cell_m) {
   per_m_ = 1 / cell_m;
   points_.clear();
-  late_.clear();
 }
 
 void SpatialGrid::add(std::uint32_t index, const Vec3& p) {
@@ -31,14 +30,6 @@ void SpatialGrid::build(std::size_t most) {
   }
   for (std::uint32_t b = 0; b < buckets; ++b) starts_[b] = starts_[b + 1];
   starts_[buckets] = static_cast<std::uint32_t>(points_.size());
-}
-
-void SpatialGrid::insert(std::uint32_t index, const Vec3& p) {
-  if (late_.empty()) late_heads_.assign(mask_ + 1, kNone);
-  const Point point{p.x(), p.y(), p.z(), static_cast<std::int32_t>(along(p.x())), index};
-  std::uint32_t& head = late_heads_[bucket_of(point)];
-  late_.push_back({point, head});
-  head = static_cast<std::uint32_t>(late_.size() - 1);
 }
 
 }  // namespace aurasim::core

@@ -23,9 +23,6 @@ class SpatialGrid {
   /// Sorts the added points into columns. The hash table has room for `most` points. Call once before any query.
   void build(std::size_t most = 0);
 
-  /// Adds a point after build().
-  void insert(std::uint32_t index, const Vec3& p);
-
   /// Calls `visit(index)` once for every point within the box [lo, hi].
   template <class Visit>
   void for_each_in(const Vec3& lo, const Vec3& hi, Visit&& visit) const {
@@ -37,7 +34,6 @@ class SpatialGrid {
     // the box is larger than the world
     if (columns > mask_ || cells > 4.0 * static_cast<double>(points_.size()) + 64) {
       for (const Point& point : points_) visit_if(box.holds(point), point, visit);
-      for (const Late& late : late_) visit_if(box.holds(late.point), late.point, visit);
       return;
     }
     for (std::int64_t row = first; row <= last; ++row) {
@@ -48,17 +44,13 @@ class SpatialGrid {
     }
   }
 
-  bool empty() const { return points_.empty() && late_.empty(); }
+  bool empty() const { return points_.empty(); }
 
  private:
   struct Point {
     double x, y, z;
     std::int32_t row;
     std::uint32_t index;
-  };
-  struct Late {
-    Point point;
-    std::uint32_t next;  ///< next point of the same bucket, in late_; kNone: the last
   };
   /// Comparisons are written so that a coordinate that is NaN counts as inside: slower, never wrong.
   struct Box {
@@ -68,7 +60,6 @@ class SpatialGrid {
              !(p.z > hi.z());
     }
   };
-  static constexpr std::uint32_t kNone = ~0u;
 
   /// Row or column of a coordinate. All far coordinates, and NaN, share the outermost one: slower, never wrong.
   std::int64_t along(double x) const {
@@ -97,11 +88,6 @@ class SpatialGrid {
     for (std::uint32_t i = starts_[from]; i < starts_[to]; ++i) {
       visit_if(sorted_[i].row == row && box.holds(sorted_[i]), sorted_[i], visit);
     }
-    for (std::uint32_t bucket = from; !late_.empty() && bucket < to; ++bucket) {
-      for (std::uint32_t i = late_heads_[bucket]; i != kNone; i = late_[i].next) {
-        visit_if(late_[i].point.row == row && box.holds(late_[i].point), late_[i].point, visit);
-      }
-    }
   }
 
   double per_m_ = 1;  ///< columns per metre
@@ -110,8 +96,6 @@ class SpatialGrid {
   std::vector<Point> sorted_;
   std::vector<std::uint32_t> buckets_;  ///< by point of points_: its bucket
   std::vector<std::uint32_t> starts_;
-  std::vector<Late> late_;
-  std::vector<std::uint32_t> late_heads_;  ///< by bucket; empty until insert() is called
 };
 
 }  // namespace aurasim::core

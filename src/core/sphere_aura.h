@@ -7,8 +7,7 @@ namespace aurasim::core {
 
 class SphereAura : public Aura {
  public:
-  double calm_speed(bool) const override { return rules().top_speed_m_s; }
-  double own_speed_of(const BodyState&) const override { return 0; }
+  double speed_of(const BodyState&) const override { return rules().top_speed_m_s; }
   bool meets(const Path& foreign, const Path& own, int hops, int fewer_steps) const override;
   bool linked(const Path& a, const Path& b, int hops) const override;
   bool meets_ghost(const Path& ghost, const Path& own, int hops, int fewer_steps) const override;

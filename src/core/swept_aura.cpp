@@ -13,14 +13,12 @@ constexpr double kSpeedFloor = 0.1;  // m/s: contacts of slow bodies
 
 }  // namespace
 
-double SweptAura::calm_speed(bool awake) const { return awake ? kSpeedFloor : kRestSpeed; }
-
-double SweptAura::own_speed_of(const BodyState& body) const {
-  if (!body.awake) return 0;
+double SweptAura::speed_of(const BodyState& body) const {
+  if (!body.awake) return kRestSpeed;
   // Other nodes cannot foresee a kick. It takes the body off its path at the kick's speed, and an aura allows only for
   // U times its stated speed. So the kick counts as much larger.
   const double share = std::clamp(rules().uncertainty, 0.1, 1.0);
-  return body.v_WB.norm() + body.coming_kick_m_s / share;
+  return kSpeedFloor + body.v_WB.norm() + body.coming_kick_m_s / share;
 }
 
 bool SweptAura::meets(const Path& foreign, const Path& own, int hops, int fewer_steps) const {

@@ -11,8 +11,7 @@ class SweptAura final : public Aura {
   SweptAura(const AuraRules& rules, const ClearanceQuery& clearance) : Aura(rules, clearance) {}
 
   bool predicts() const override { return true; }
-  double calm_speed(bool awake) const override;
-  double own_speed_of(const BodyState& body) const override;
+  double speed_of(const BodyState& body) const override;
   bool meets(const Path& foreign, const Path& own, int hops, int fewer_steps) const override;
   bool linked(const Path& a, const Path& b, int hops) const override;
   bool meets_ghost(const Path& ghost, const Path& own, int hops, int fewer_steps) const override;

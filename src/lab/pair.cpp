@@ -6,7 +6,6 @@
 
 #include "core/horizon.h"
 #include "core/make_aura.h"
-#include "core/pushes.h"
 
 namespace aurasim::lab {
 namespace {
@@ -83,12 +82,6 @@ std::uint32_t shape_of(PairKind kind, Chance& chance) {
   return kind == PairKind::kRandom ? chance.below(3) : kSphere;
 }
 
-/// Speed with which a body may leave its path according to its aura, m/s.
-double stated_m_s(double speed_m_s, double uncertainty) {
-  constexpr double kCalm_m_s = 0.1;
-  return core::Push::of(speed_m_s, {1, core::Material{}.restitution}, uncertainty).speed_m_s + kCalm_m_s;
-}
-
 /// Seconds before the meeting at which no aura of any kind links the bodies yet, not even in state 0, when clusters
 /// look four times as far ahead (core::assign_hosts), and from which on the nodes have 12 K steps to talk.
 double notice_s(PairKind kind, const Conditions& conditions, double v_a, double v_b, double closing_m_s) {
@@ -100,12 +93,15 @@ double notice_s(PairKind kind, const Conditions& conditions, double v_a, double 
        {AuraChoice::kThesis, AuraChoice::kTight, AuraChoice::kTightAtThesisSize, AuraChoice::kSwept}) {
     core::AuraRules rules = rules_for(choice, conditions);
     rules.lookahead = core::horizon::lookahead_at_start(rules.lookahead);
-    const double stated = stated_m_s(v_a, rules.uncertainty) + stated_m_s(v_b, rules.uncertainty);
+    core::BodyState body;
+    body.v_WB.x() = v_a + v_b;
+    const std::unique_ptr<const core::Aura> aura = core::make_aura(rules, shapes);
+    const double stated = aura->speed_of(body) + aura->speed_of({});
     if (choice == AuraChoice::kSwept) {
       swept_s = core::horizon::announcing(rules.lookahead, hops) * kStep_s;
       swept_s += rules.uncertainty * swept_s * stated / closing_m_s;
     } else {
-      far_m = std::max(far_m, core::make_aura(rules, shapes)->link_range(hops).at(stated) + 2 * kRadius_m);
+      far_m = std::max(far_m, aura->link_range(hops).at(stated) + 2 * kRadius_m);
     }
   }
   const double talk_s = (12 * lookahead(conditions.promised) + 8) * kStep_s;

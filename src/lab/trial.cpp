@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/usual_uncertainty.h"
+
 namespace aurasim::lab {
 namespace {
 
@@ -18,6 +20,7 @@ const node::SeenCollision* first_contact(const node::StepReport& report) {
 ClusterRules rules_of(const Conditions& conditions, const Variant& variant, const Disorder& disorder) {
   ClusterRules rules;
   rules.aura = rules_for(variant.aura, conditions);
+  rules.aura.uncertainty = core::usual_uncertainty(variant.sync);
   rules.sync = variant.sync;
   rules.network.latency_s = conditions.latency_s;
   rules.network.loss = conditions.loss;

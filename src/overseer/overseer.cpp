@@ -196,8 +196,7 @@ void Overseer::show_overlays() {
   const Show wanted = web_.wanted();
   overlays_.look(participant_, watch_.observer_settings(), wanted, scene_, watch_.view());
   if (!wanted.auras && !wanted.links && !wanted.contacts) return;
-  const double ahead_s =
-      (1 + watch_.launch().aura.uncertainty) * watch_.launch().lookahead() * watch_.launch().step_s();
+  const double ahead_s = (1 + watch_.launch().uncertainty()) * watch_.launch().lookahead() * watch_.launch().step_s();
   web_.show_overlays(overlays_.encode(watch_.view(), ahead_s));
 }
 

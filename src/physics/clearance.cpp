@@ -120,23 +120,7 @@ class Query : public core::ClearanceQuery {
 
   double bounding_radius(core::PrototypeId prototype) const override { return of(prototype).radius; }
 
-  core::BodyTraits traits(core::PrototypeId prototype) const override {
-    if (core::value_of(prototype) >= scene_.prototypes.size()) return {};
-    const core::Prototype& kind = scene_.prototypes[core::value_of(prototype)];
-    return {kind.mass_kg, most_restitution(kind)};
-  }
-
  private:
-  double most_restitution(const core::Prototype& kind) const {
-    double most = scene_.materials.at(kind.material).restitution;
-    const auto* const compound = std::get_if<core::Compound>(&scene_.shapes.at(kind.shape).shape);
-    if (compound == nullptr) return most;
-    for (const core::CompoundPart& part : compound->parts) {
-      if (part.material) most = std::max(most, scene_.materials.at(*part.material).restitution);
-    }
-    return most;
-  }
-
   static double between(const Part& a, const Pose& pose_a, const Part& b, const Pose& pose_b, double limit_m) {
     const double spheres_apart = (pose_b.p_WB - pose_a.p_WB).norm() - a.radius - b.radius;
     if (spheres_apart > limit_m || (is_ball(a) && is_ball(b))) return spheres_apart;

@@ -36,7 +36,7 @@ core::AuraRules aura_rules(const config::Launch& launch) {
   rules.top_speed_m_s = launch.tolerances.speed_m_s;
   rules.frame_s = launch.tolerances.frame_s;
   rules.latency_s = launch.tolerances.latency_s;
-  rules.uncertainty = launch.aura.uncertainty;
+  rules.uncertainty = launch.uncertainty();
   rules.gravity = launch.scene.gravity;
   rules.sweeps = launch.physics.is_continuous();
   rules.redo = launch.redoes();

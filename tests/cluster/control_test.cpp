@@ -195,6 +195,7 @@ TEST(Control, APushIsForeseenByTheNeighbours) {
   }
   ClusterOptions options = options_for(1, 2, 1, false);
   options.sync = core::SyncMode::kBounded;
+  options.aura.uncertainty = 1.5;  // they hit each other and turn around, which breaks no promise then
   const std::vector<core::Setpoints> words = {
       {1,
        1,

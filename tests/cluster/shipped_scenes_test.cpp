@@ -77,7 +77,8 @@ class ShippedCluster : public testing::TestWithParam<std::tuple<std::size_t, std
     options.seed = static_cast<std::uint64_t>(seed);
     options.aura.lookahead = 1 + seed % 3;
     options.aura.substeps = launch.time.substeps;
-    options.aura.uncertainty = launch.aura.uncertainty;
+    options.aura.uncertainty = launch.uncertainty();
+    options.aura.redo = launch.time.redo == config::Redo::kOn;
     options.physics.solver = physics::solver_named(launch.physics.solver);
     options.physics.solver_iterations = launch.physics.iterations;
     options.physics.friction_directions = launch.physics.friction_directions;

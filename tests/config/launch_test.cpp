@@ -17,7 +17,7 @@ TEST(LaunchFile, EverythingButSceneAndRegionsHasADefault) {
   EXPECT_EQ(launch.tolerances.latency_s, 0.002);
   EXPECT_EQ(launch.tolerances.frame_s, 0.015);
   EXPECT_EQ(launch.aura.radius, core::AuraKind::kSwept);
-  EXPECT_EQ(launch.aura.uncertainty, 0.5);
+  EXPECT_EQ(launch.uncertainty(), 0.5);
   EXPECT_EQ(launch.physics.solver, "soft_step");
   EXPECT_EQ(launch.physics.iterations, 10);
   EXPECT_EQ(launch.dds.domain, 0);
@@ -132,7 +132,7 @@ observe: {tick_hz: 30}
   EXPECT_EQ(launch.lookahead(), 3);
   EXPECT_EQ(launch.tolerances.speed_m_s, 20);
   EXPECT_EQ(launch.aura.radius, core::AuraKind::kTight);
-  EXPECT_EQ(launch.aura.uncertainty, 1);
+  EXPECT_EQ(launch.uncertainty(), 1);
   EXPECT_EQ(launch.physics.solver, "sequential_impulse");
   EXPECT_EQ(launch.physics.iterations, 30);
   EXPECT_EQ(launch.physics.friction_directions, 2);

@@ -69,13 +69,12 @@ TEST_F(Arrival, GoesHomeOnlyIfNobodyWhoStaysMayMeetItSoon) {
     receive(std::move(h), 2);
     host(8, Vec3(19 - gap_m, 0, 0), Vec3(6, 0, 0)).epoch = 1;
     std::vector<Path> paths;
-    std::vector<double> speeds_m_s;
     for (const BodyState& each : snapshot.bodies) {
       paths.push_back(path_of(each, 0, shapes));
-      speeds_m_s.push_back(aura->own_speed_of(each));
+      paths.back().speed_m_s = aura->speed_of(each);
     }
     Clusters clusters(*aura);
-    clusters.begin(paths, speeds_m_s, std::vector<std::uint64_t>(2), {}, {});
+    clusters.begin(paths, std::vector<std::uint64_t>(2), {}, {});
     clusters.complete(0);
     const bool one_cluster = clusters.of(0) == clusters.of(1);
     const bool meets_soon = clusters.any_near(0, horizon::kHomewardHops, [](std::uint32_t) { return true; });

@@ -10,10 +10,10 @@ namespace aurasim::core::testing {
 
 class RoundShapes : public ClearanceQuery {
  public:
-  PrototypeId sphere(double radius_m, const BodyTraits& traits = {}) { return add({{Vec3::Zero()}, radius_m, traits}); }
+  PrototypeId sphere(double radius_m) { return add({{Vec3::Zero()}, radius_m}); }
   /// Two balls, `half_length_m` from the body's origin along x: its spin can be felt.
   PrototypeId dumbbell(double radius_m, double half_length_m) {
-    return add({{half_length_m * Vec3::UnitX(), -half_length_m * Vec3::UnitX()}, radius_m, {}});
+    return add({{half_length_m * Vec3::UnitX(), -half_length_m * Vec3::UnitX()}, radius_m});
   }
 
   double clearance(PrototypeId a, const Pose& pose_a, PrototypeId b, const Pose& pose_b, double) const override {
@@ -33,13 +33,10 @@ class RoundShapes : public ClearanceQuery {
     return balls.centres.front().norm() + balls.radius_m;
   }
 
-  BodyTraits traits(PrototypeId prototype) const override { return shapes_.at(value_of(prototype)).traits; }
-
  private:
   struct Balls {
     std::vector<Vec3> centres;
     double radius_m;
-    BodyTraits traits;
   };
 
   PrototypeId add(Balls balls) {

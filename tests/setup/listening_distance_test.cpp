@@ -22,7 +22,7 @@ class ListeningDistance : public ::testing::TestWithParam<int> {
 /// to where others may come in 3 K.
 TEST_P(ListeningDistance, ReachesAsFarAsBodiesProjectWhileRanksChange) {
   const double k = GetParam();
-  const double way = (1 + launch_.aura.uncertainty) * 7 * k * launch_.step_s() * launch_.tolerances.speed_m_s;
+  const double way = (1 + launch_.uncertainty()) * 7 * k * launch_.step_s() * launch_.tolerances.speed_m_s;
   const double fall_s = 4 * k * launch_.step_s();
   const double fall = 0.5 * launch_.scene.gravity.norm() * fall_s * fall_s;
   EXPECT_GE(listening_distance_m(launch_), way + fall + 2 * kRadius_m);
