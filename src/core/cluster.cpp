@@ -10,7 +10,14 @@
 namespace aurasim::core {
 namespace {
 
-int hops_of(std::uint64_t regions) { return std::clamp(std::popcount(regions), 1, horizon::kMostHops); }
+/// Most hops that clusters look ahead where states are checked. A pull that chains through a third region is left to a
+/// redo: each further hop lets links reach farther, and dense worlds come to be one cluster
+/// (docs/decisions/0033-no-pushes.md).
+constexpr int kMostHopsWhereChecked = 1;
+
+int hops_of(std::uint64_t regions, const AuraRules& rules) {
+  return std::clamp(std::popcount(regions), 1, rules.redo ? kMostHopsWhereChecked : horizon::kMostHops);
+}
 
 }  // namespace
 
@@ -42,7 +49,7 @@ void Clusters::begin(std::span<const Path> paths, std::span<const std::uint64_t>
 
 void Clusters::set_regions(std::uint32_t cluster, std::uint64_t regions) {
   regions_[cluster] = regions;
-  const int hops = hops_each_ * hops_of(regions);
+  const int hops = hops_each_ * hops_of(regions, aura_.rules());
   hops_[cluster] = hops;
   most_hops_ = std::max(most_hops_, hops);
 }
@@ -57,7 +64,7 @@ bool Clusters::add_regions(std::uint32_t i, std::uint64_t regions) {
   const std::uint32_t cluster = of(i);
   if ((regions & ~regions_[cluster]) == 0) return false;
   const std::uint64_t all = regions_[cluster] | regions;
-  note_more_hops(i, hops_each_ * hops_of(all));
+  note_more_hops(i, hops_each_ * hops_of(all, aura_.rules()));
   set_regions(cluster, all);
   complete_[cluster] = 0;
   return true;
@@ -73,8 +80,8 @@ std::uint32_t Clusters::unite(std::uint32_t a, std::uint32_t b) {
   links_.push_back(link);
   if (size_[a] < size_[b]) std::swap(a, b);
   const std::uint64_t all = regions_[a] | regions_[b];
-  note_more_hops(a, hops_each_ * hops_of(all));
-  note_more_hops(b, hops_each_ * hops_of(all));
+  note_more_hops(a, hops_each_ * hops_of(all, aura_.rules()));
+  note_more_hops(b, hops_each_ * hops_of(all, aura_.rules()));
   for_each_member(b, [&](std::uint32_t j) { label_[j] = a; });
   size_[a] += size_[b];
   set_regions(a, all);

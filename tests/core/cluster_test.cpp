@@ -151,6 +151,14 @@ TEST_F(ClusterTest, HasAtLeastOneHopAndMoreWhereMoreRegionsAreNear) {
   EXPECT_FALSE(clusters->add_regions(a, 0b101)) << "nothing new";
 }
 
+TEST_F(ClusterTest, HasOneHopWhereStatesAreChecked) {
+  rules.redo = true;
+  const auto a = place(Vec3(0, 0, 0));
+  begin();
+  EXPECT_TRUE(clusters->add_regions(a, 0b111));
+  EXPECT_EQ(clusters->hops(a), 1);
+}
+
 TEST_F(ClusterTest, ThatLearnsOfAnotherRegionHasToBeCompletedAgain) {
   const auto a = place(Vec3(0, 0, 0));
   complete_all();
