@@ -97,6 +97,10 @@ void Intake::accept(Inbox& inbox) {
     }
     if (!belongs(batch, batch.map_version)) return;
     Neighbour& neighbour = *find(batch.source);
+    if (batch.word > 0) {
+      if (!neighbour.accept_word(std::move(batch))) ++counters_.copies;
+      return;
+    }
     if (batch.stamp > neighbour.received() + kMostStatesAhead) {
       return accept(Refusal{batch.source, batch.generation, batch.stamp, MessageKind::kAura, "far ahead", batch.redo});
     }
@@ -178,6 +182,14 @@ bool Intake::has_all(const Neighbour& neighbour, Step until) const {
 bool Intake::has_all(RegionId region, Step until) const {
   const Neighbour* const neighbour = find(region);
   return neighbour == nullptr || has_all(*neighbour, until);
+}
+
+bool Intake::announces_redo() const { return std::ranges::any_of(neighbours_, &Neighbour::announces_redo); }
+
+bool Intake::all_have_said(Step stamp, std::uint32_t number) const {
+  return std::ranges::all_of(neighbours_, [&](const Neighbour& neighbour) {
+    return !neighbour.alive() || neighbour.word(stamp, number) != nullptr;
+  });
 }
 
 bool Intake::ready(Step n) const {

@@ -66,6 +66,11 @@ class Intake {
   /// neighbour.
   bool has_all(RegionId region, Step until) const;
 
+  /// True if a batch that has not taken effect yet has an alarm or the order of a redo.
+  bool announces_redo() const;
+  /// Have all live neighbours said this word in state `stamp`?
+  bool all_have_said(Step stamp, std::uint32_t number) const;
+
   std::span<const Neighbour> neighbours() const { return neighbours_; }
   /// Neighbours marked dead. They are not waited for, and nothing of them is accepted any more.
   std::vector<RegionId> dead_regions() const;

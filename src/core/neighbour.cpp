@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <utility>
+#include <variant>
 
 namespace aurasim::core {
 namespace {
 
 /// The gate asks for a stamp at most this far behind the newest batch in effect.
 constexpr Step kGateHistory = 64;
+
+/// More words than nodes ever say in one state: two, and one for each hop across the map.
+constexpr std::size_t kMostWords = 256;
 
 bool by_id(const AuraRecord& a, const AuraRecord& b) { return a.id < b.id; }
 
@@ -24,6 +28,27 @@ bool Neighbour::accept(AuraBatch batch) {
     ++received_;
   }
   return true;
+}
+
+bool Neighbour::accept_word(AuraBatch word) {
+  const Step newest = words_.empty() ? word.stamp : words_.front().stamp;
+  if (word.stamp < newest || this->word(word.stamp, word.word) != nullptr || words_.size() >= kMostWords) return false;
+  if (word.stamp > newest) words_.clear();
+  words_.push_back(std::move(word));
+  return true;
+}
+
+const AuraBatch* Neighbour::word(Step stamp, std::uint32_t number) const {
+  const auto found =
+      std::ranges::find_if(words_, [&](const AuraBatch& word) { return word.stamp == stamp && word.word == number; });
+  return found == words_.end() ? nullptr : &*found;
+}
+
+bool Neighbour::announces_redo() const {
+  const auto is_redo = [](const Order& order) { return std::holds_alternative<Redo>(order.action); };
+  return std::ranges::any_of(waiting_, [&](const AuraBatch& batch) {
+    return !batch.alarms.empty() || std::ranges::any_of(batch.orders, is_redo);
+  });
 }
 
 void Neighbour::note_marks(const AuraBatch& batch) {

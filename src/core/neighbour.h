@@ -21,6 +21,13 @@ class Neighbour {
   /// Keeps a batch until its turn. False when it is a copy of one already seen.
   bool accept(AuraBatch batch);
 
+  /// Keeps a word (AuraBatch::word), and drops those of earlier states. False when it is a copy or out of date.
+  bool accept_word(AuraBatch word);
+  /// The word of this number that the neighbour has said in state `stamp`; null: it has not arrived.
+  const AuraBatch* word(Step stamp, std::uint32_t number) const;
+  /// True if a batch that has not taken effect yet has an alarm or the order of a redo.
+  bool announces_redo() const;
+
   /// Stamp up to which every batch has arrived; start - 1 at first.
   Step received() const { return received_; }
   /// Stamp of the newest batch that has taken effect; start - 1 at first.
@@ -91,6 +98,7 @@ class Neighbour {
   std::vector<Alarm> alarms_;
   std::vector<Introduced> introductions_;
   std::vector<AuraRecord> past_;
+  std::vector<AuraBatch> words_;  ///< of the newest state in which the neighbour stands
 };
 
 }  // namespace aurasim::core

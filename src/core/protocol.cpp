@@ -35,7 +35,8 @@ Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const
       hops_across_(hops_across(map, settings.neighbour_distance_m)),
       listening_(vicinity_, intake_, settings.aura.lookahead, settings.start, settings.related),
       introducer_(*aura_, vicinity_),
-      check_(*aura_, vicinity_, settings.start) {}
+      check_(*aura_, vicinity_, settings.start),
+      standing_(hops_across_) {}
 
 Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const ClearanceQuery& clearance,
                    Continuation continuation)
@@ -173,12 +174,16 @@ void Protocol::rank(Step now) {
   }
 }
 
-void Protocol::fill_header() {
-  AuraBatch& batch = outbox_.aura;
+void Protocol::sign(AuraBatch& batch) const {
   batch.source = vicinity_.self;
   batch.generation = settings_.generation;
   batch.redo = settings_.redo;
   batch.map_version = map_version_;
+}
+
+void Protocol::fill_header() {
+  AuraBatch& batch = outbox_.aura;
+  sign(batch);
   batch.full = full_;
   batch.top_speed_m_s = matching_.top_speed();
   batch.top_radius_m = matching_.top_radius();
@@ -210,6 +215,40 @@ void Protocol::note_made_up(Step step, std::uint32_t nth, std::span<const BodyRe
     check_.take_made_up(body, step, nth);
     past_.push_back(aura_record(body, vicinity_.self, step));
   }
+}
+
+void Protocol::begin_to_stand() {
+  standing_.begin(outbox_.aura.stamp);
+  word_.aura = {};
+  sign(word_.aura);
+  word_.aura.stamp = standing_.state();
+  word_.listeners = vicinity_.neighbours;
+}
+
+void Protocol::note_to_come(Step step, std::uint32_t nth, std::span<const BodyRecord> bodies) {
+  for (const BodyRecord& record : bodies) {
+    const BodyState body = state_of(record);
+    check_.take_made_up(body, step, nth);
+    word_.aura.past.push_back(aura_record(body, vicinity_.self, step));
+  }
+}
+
+const Outbox* Protocol::next_word() {
+  if (standing_.is_checked_by_all(intake_)) checked_by_all_ = standing_.state();
+  if (!standing_.may_say_more(intake_)) return nullptr;
+  if (standing_.said() == 1) check_as_it_stands();
+  if (!alarms_.standing().empty()) return nullptr;
+  if (standing_.said() == 1) word_.aura.past.clear();
+  word_.aura.word = standing_.say();
+  return &word_;
+}
+
+void Protocol::check_as_it_stands() {
+  for (const Neighbour& neighbour : intake_.neighbours()) {
+    if (neighbour.alive()) check_.take_ahead(neighbour, *neighbour.word(standing_.state(), 1));
+  }
+  check_.look_at_all(standing_.state());
+  for (const Alarm& alarm : check_.found()) alarms_.raise(alarm.step, alarm.a, alarm.b);
 }
 
 /// An alarm is raised when its state is checked. It travels to the lead, whose order of a redo then travels to all

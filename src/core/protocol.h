@@ -23,6 +23,7 @@
 #include "core/ranks.h"
 #include "core/redo.h"
 #include "core/region_map.h"
+#include "core/standing.h"
 #include "core/state_check.h"
 #include "core/vicinity.h"
 #include "core/violation.h"
@@ -122,6 +123,22 @@ class Protocol {
 
   /// Call for each state that an adopted cluster, the `nth` of this step, has made up.
   void note_made_up(Step step, std::uint32_t nth, std::span<const BodyRecord> bodies);
+
+  // While the run stands in the state of the last observe(), and all that others have sent up to it has arrived
+  // (core/standing.h)
+  /// Has begin_to_stand() been called in this state?
+  bool stands() const { return standing_.state() == outbox_.aura.stamp; }
+  void begin_to_stand();
+  /// Call after begin_to_stand() for each state, up to the present one, of a cluster that joins later, the `nth` of
+  /// those.
+  void note_to_come(Step step, std::uint32_t nth, std::span<const BodyRecord> bodies);
+  /// The next word to send; null: there is none now. Precondition: stands(). Call again until it returns null.
+  const Outbox* next_word();
+  /// The newest state in which the run stood and which all nodes have checked, as far as this node knows; -1: none.
+  Step checked_by_all() const { return checked_by_all_; }
+  /// True if the run is going to be computed again, as far as is known here: an alarm stands, or a redo is ordered.
+  bool has_news_of_redo() const { return !alarms_.standing().empty() || intake_.announces_redo(); }
+
   /// The newest confirmed state: no alarm can question it any more. With AuraRules::redo only.
   Step confirmed() const;
   /// Like confirmed(), but ignores the alarms that stand now.
@@ -182,8 +199,10 @@ class Protocol {
   void depart(std::uint32_t i, RegionId destination, HandOffReason reason, const Snapshot& snapshot);
   void rank(Step now);
   void fill_header();
+  void sign(AuraBatch& batch) const;
   void receive_violations();
   void check(const Snapshot& snapshot);
+  void check_as_it_stands();
 
   ProtocolSettings settings_;
   Vicinity vicinity_;
@@ -204,6 +223,9 @@ class Protocol {
   AlarmLog alarms_;
   StateCheck check_;
   std::vector<AuraRecord> past_;  ///< AuraBatch::past of the next batch
+  Standing standing_;
+  Outbox word_;
+  Step checked_by_all_ = -1;
   Changes changes_;
   std::vector<Departure> departing_;
   std::vector<std::uint8_t> decided_;

@@ -38,7 +38,7 @@ double bulge(double longest, double apart) {
 }  // namespace
 
 StateCheck::StateCheck(const Aura& aura, const Vicinity& vicinity, Step start)
-    : aura_(aura), vicinity_(vicinity), checked_(start) {}
+    : aura_(aura), vicinity_(vicinity), checked_(start), whole_(start - 1) {}
 
 StateCheck::State& StateCheck::state(Step step) {
   auto place = std::find_if(states_.begin(), states_.end(), [&](const State& s) { return s.step >= step; });
@@ -51,7 +51,7 @@ StateCheck::State& StateCheck::state(Step step) {
 }
 
 void StateCheck::add(const AuraRecord& aura, Step step, std::uint32_t world) {
-  if (step < checked_) return;
+  if (step < checked_ || step <= whole_) return;
   Sighting& seen = state(step).others.emplace_back();
   seen.id = aura.id;
   seen.world = world;
@@ -84,9 +84,29 @@ void StateCheck::take_own(const Snapshot& snapshot, const InterestMatching& matc
 }
 
 void StateCheck::take_made_up(const BodyState& body, Step step, std::uint32_t nth) {
-  if (step < checked_) return;
+  if (step < checked_ || step <= whole_) return;
   state(step).others.push_back(
       {body.id, kFirstLonely + nth, path_of(body, step, aura_.clearance()), body.birth <= step});
+}
+
+void StateCheck::take_ahead(const Neighbour& neighbour, const AuraBatch& word) {
+  Neighbour ahead = neighbour;
+  ahead.apply_until(word.stamp, [this](const Neighbour& then) { take(then); });
+  for (const AuraRecord& aura : word.past) add(aura, aura.stamp, value_of(neighbour.id()));
+}
+
+void StateCheck::look_at_all(Step now) {
+  found_.clear();
+  for (; checked_ < now; ++checked_) check(checked_ + 1);
+  whole_ = now;
+  forget();
+}
+
+/// Drops the states that no check needs any more.
+void StateCheck::forget() {
+  for (; !states_.empty() && states_.front().step < checked_; states_.pop_front()) {
+    spare_ = std::move(states_.front());
+  }
 }
 
 void StateCheck::look(Step now, std::span<const Neighbour> neighbours) {
@@ -98,9 +118,7 @@ void StateCheck::look(Step now, std::span<const Neighbour> neighbours) {
   }
   const Step last = std::min(now - horizon::check(lookahead), known - (lookahead - 1));
   for (; checked_ < last; ++checked_) check(checked_ + 1);
-  for (; !states_.empty() && states_.front().step < checked_; states_.pop_front()) {
-    spare_ = std::move(states_.front());
-  }
+  forget();
 }
 
 /// The motion of a body through the step that ends in `now`. Without `before`, its announcement has just begun: it was

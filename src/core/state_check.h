@@ -33,9 +33,15 @@ class StateCheck {
   /// with other bodies.
   void take_made_up(const BodyState& body, Step step, std::uint32_t nth);
 
+  /// Adds what a neighbour has published about states up to `now`, in which the run stands, and has not taken effect
+  /// yet. `word`: its first word in this state.
+  void take_ahead(const Neighbour& neighbour, const AuraBatch& word);
+  /// Checks all states up to `now`, in which the run stands. Call after take_ahead() for each live neighbour.
+  void look_at_all(Step now);
   /// Checks all states for which everything has been received, when state `now` is complete.
   void look(Step now, std::span<const Neighbour> neighbours);
-  /// Pairs, a < b, that the last look() found, each with the state in whose computation they may have touched.
+  /// Pairs, a < b, that the last look() or look_at_all() found, each with the state in whose computation they may have
+  /// touched.
   std::span<const Alarm> found() const { return found_; }
   /// The last state that has been looked at.
   Step checked() const { return checked_; }
@@ -70,6 +76,7 @@ class StateCheck {
   State& state(Step step);
   void add(const AuraRecord& aura, Step step, std::uint32_t world);
   void check(Step step);
+  void forget();
   void gather_ways(const State& before, const State& after);
   Way way(const Sighting& now, const Sighting* before) const;
   void compare_with_others(const Way& one, std::uint32_t from, double margin_m);
@@ -84,6 +91,7 @@ class StateCheck {
   const Aura& aura_;
   const Vicinity& vicinity_;
   Step checked_;
+  Step whole_;  ///< nothing is missing of states up to this one, in which the run stood
   std::deque<State> states_;
   State spare_;                    ///< memory for the next one of states_
   std::vector<Way> own_, others_;  ///< ways in the step that is being checked

@@ -91,7 +91,7 @@ std::optional<VirtualCluster::Event> VirtualCluster::try_next() {
     double event_s = std::numeric_limits<double>::infinity();
     Member* chosen = nullptr;
     for (Member& member : members_) {
-      if (!member.is_alive || member.node->current_step() >= member.last) continue;
+      if (!member.is_alive || holds(member)) continue;
       const double at_s = member.waiting ? std::max(network_.next_arrival_s(), network_.now_s()) : due_s(member);
       if (at_s >= event_s) continue;
       event_s = at_s;
@@ -117,10 +117,33 @@ void VirtualCluster::end_in(core::Step last) {
 }
 
 void VirtualCluster::stand_in(core::Step state) {
+  constexpr int kMostRounds = 10'000;
   end_in(state);
-  while (slowest() < state) next();
+  stands_ = true;
+  int rounds = 0;
+  do {
+    if (++rounds > kMostRounds) throw std::logic_error("the nodes do not finish the check of a state");
+    while (try_next()) {
+    }
+    deliver_all();
+  } while (!all_stand());
+  stands_ = false;
   end_in(std::numeric_limits<core::Step>::max());
-  deliver_all();
+}
+
+bool VirtualCluster::holds(const Member& member) const {
+  return member.node->current_step() >= member.last && !(stands_ && member.node->is_going_back());
+}
+
+/// Lets each node go on with its check. True if all have ended it.
+bool VirtualCluster::all_stand() {
+  bool all = true;
+  for (Member& member : members_) {
+    if (!member.is_alive) continue;
+    const bool stands = member.node->current_step() == member.last && member.node->stand();
+    all = all && stands;
+  }
+  return all;
 }
 
 void VirtualCluster::deliver_all() {

@@ -77,7 +77,9 @@ class VirtualCluster {
   /// From now on no node computes a state after `last`, or the node of this region does not.
   void end_in(core::Step last);
   void end_in(core::RegionId region, core::Step last) { member(region).last = last; }
-  /// Pauses in `state`: all nodes compute this state and none the next, and all messages under way arrive.
+  /// Pauses in `state`: all nodes compute this state and none the next, all messages under way arrive, and all nodes
+  /// check the state (node::Node::stand). If it has to be computed again, that is done first. Throws std::logic_error
+  /// if the nodes do not come to an end of it.
   void stand_in(core::Step state);
   /// Lets all messages under way arrive. No node computes a state.
   void deliver_all();
@@ -119,6 +121,8 @@ class VirtualCluster {
 
   Member& member(core::RegionId region) { return members_[core::value_of(region)]; }
 
+  bool holds(const Member& member) const;
+  bool all_stand();
   double due_s(const Member& member) const;
   void compute(Member& member, double at_s);
   double chance();
@@ -128,6 +132,7 @@ class VirtualCluster {
   transport::MemoryNetwork network_;
   std::optional<WirePost> post_;
   std::vector<Member> members_;
+  bool stands_ = false;  ///< nodes in their last state check it, and compute on if it has to be computed again
   std::uint64_t random_;
   const node::StepReport* report_ = nullptr;
 };

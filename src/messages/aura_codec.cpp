@@ -65,6 +65,7 @@ void encode(const AuraBatch& batch, wire::AuraBatch& out) {
   out.generation(batch.generation);
   out.redo(batch.redo);
   out.stamp(batch.stamp);
+  out.word(batch.word);
   out.map_version(batch.map_version);
   out.full(batch.full);
   out.top_speed_m_s(batch.top_speed_m_s);
@@ -97,6 +98,7 @@ Decoded<AuraBatch> decode(const wire::AuraBatch& in, const Expected& expected) {
   batch.generation = in.generation();
   batch.redo = in.redo();
   batch.stamp = in.stamp();
+  batch.word = in.word();
   batch.map_version = in.map_version();
   batch.full = in.full();
   batch.top_speed_m_s = in.top_speed_m_s();

@@ -65,7 +65,8 @@ std::optional<WireError> check_checks(const wire::AuraBatch& in, const Expected&
     if (!(std::abs(norm - 1) <= kRotationTolerance)) return WireError::kRotation;
     if (!is_bearable(&in.past_motion()[i * kMotionNumbers])) return WireError::kRange;
   }
-  const auto before_now = [&](std::int64_t stamp) { return stamp >= 0 && stamp < in.stamp(); };
+  const std::int64_t newest = in.word() > 0 ? in.stamp() : in.stamp() - 1;  // a word has the state itself, too
+  const auto before_now = [newest](std::int64_t stamp) { return stamp >= 0 && stamp <= newest; };
   bool in_range = all_body_ids(in.alarm_b()) && all_body_ids(in.past_id()) &&
                   all_below(in.past_prototype(), expected.prototype_count) && none_negative(in.alarm_step()) &&
                   std::ranges::all_of(in.past_stamp(), before_now) &&

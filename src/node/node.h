@@ -68,6 +68,14 @@ class Node {
   void keep(core::Step last);
   /// The newest confirmed state: no alarm can question it any more. Its report may be given out later.
   core::Step confirmed_step() const;
+  /// To be called often while the run stands in the present state, which is then checked without a later one. Sends and
+  /// takes in messages. True once all nodes have checked the state, and no pair has touched on two of them.
+  bool stand();
+  /// True if the run will go back to before the present state. A run that stands has to compute on until it does.
+  bool is_going_back() const;
+  /// The newest state that observers may be given: it is confirmed, or the run stood in it and all nodes have checked
+  /// it. No redo for a pair changes it any more.
+  core::Step shown_step() const;
   /// Ends the run. Precondition: state `last` is confirmed. Returns the reports up to `last` that have not been given
   /// out, and one more of state `last` with what has joined it since. If keep() named `last`, the world is put back to
   /// that state, with all bodies that were under way.
@@ -179,6 +187,7 @@ class Node {
 
   // History (node_redo.cpp, node_cut.cpp)
   bool may_go_back() const;
+  void begin_to_stand();
   bool redo_is_due() const { return redo_ && redo_->at_step <= current_step(); }
   void take_cut();
   Cut cut(core::ClusterState memory = {}) const;

@@ -13,6 +13,34 @@ core::Step Node::confirmed_step() const {
   return protocol_->alarms_given_up() ? protocol_->confirmed_but_for_alarms() : protocol_->confirmed();
 }
 
+core::Step Node::shown_step() const {
+  return may_go_back() ? std::max(confirmed_step(), protocol_->checked_by_all()) : current_step();
+}
+
+bool Node::is_going_back() const {
+  return may_go_back() && protocol_->computes_again() &&
+         (redo_.has_value() || redo_is_ordered_ || protocol_->has_news_of_redo());
+}
+
+bool Node::stand() {
+  take_mail();
+  if (shown_step() >= current_step()) return true;
+  if (!may_go_back() || is_going_back() || !has_all_until(current_step())) return false;
+  if (!protocol_->stands()) begin_to_stand();
+  while (const core::Outbox* const word = protocol_->next_word()) transport_->send(*word);
+  return shown_step() >= current_step();
+}
+
+/// Notes the present and earlier states of bodies that join later. Neighbours need them to check these states.
+void Node::begin_to_stand() {
+  protocol_->begin_to_stand();
+  std::uint32_t nth = 0;
+  for (const MadeUp& state : foresee()) {
+    protocol_->note_to_come(state.step, nth, state.bodies);
+    if (state.step == current_step()) ++nth;  // the last state of a cluster
+  }
+}
+
 /// True if the run may go back to a cut. A node that is alone never does: no body is ever in two worlds.
 bool Node::may_go_back() const { return setup_.protocol.aura.redo && map_->size() > 1; }
 
@@ -60,8 +88,10 @@ void Node::put_back() {
   const auto redo = std::get<core::Redo>(order.action);
   redo_.reset();
   redo_is_ordered_ = false;
-  if (!std::ranges::all_of(protocol_->alarms().standing(), core::is_about_a_pair)) statics_.note_doubt(from);
+  const bool is_for_static = !std::ranges::all_of(protocol_->alarms().standing(), core::is_about_a_pair);
+  if (is_for_static) statics_.note_doubt(from);
   clear_report();
+  report_.put_back_for_static = is_for_static;
   Cut& cut = cuts_.back_to(redo.cut);
   setup_.protocol.together = redo.pairs;
   setup_.protocol.start = cut.step;

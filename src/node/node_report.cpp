@@ -16,6 +16,7 @@ void Node::note_removals() {
 void Node::clear_report() {
   report_.put_back_from.reset();
   report_.put_back_for.clear();
+  report_.put_back_for_static = false;
   report_.durations = {};
   report_.departures.clear();
   report_.departed.clear();

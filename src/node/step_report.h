@@ -101,6 +101,7 @@ struct StepReport {
   std::uint64_t violations_total = 0;            ///< since the start
   std::optional<core::Step> put_back_from;       ///< set after a redo: the run has gone back from this state to `step`
   std::vector<core::TogetherPair> put_back_for;  ///< pairs of the redo; they now come to one host in time
+  bool put_back_for_static = false;              ///< the redo was, also, for a static that was elsewhere than ordered
 };
 
 }  // namespace aurasim::node

@@ -117,6 +117,11 @@ void NodeEndpoints::publish_ros2(node::Node& node, core::Generation generation) 
   if (ros2_) ros2_->publish(node, generation, leads());
 }
 
+void NodeEndpoints::put_back(core::Step step) {
+  observers_->put_back(step);
+  if (ros2_) ros2_->put_back(step);
+}
+
 std::map<core::RegionId, node::PeerSign> NodeEndpoints::peer_signs() {
   std::map<core::RegionId, node::PeerSign> signs;
   for (std::uint32_t r = 0; r < launch_.regions.size(); ++r) {

@@ -132,7 +132,8 @@ bool NodeProcess::wait_until_due() {
   const core::Step next = run_.node->current_step() + 1;
   const auto begin = Clock::now();
   if (run_.schedule.holds_at()) run_.schedule.follow(farthest_pause(run_.control().statuses(), run_.generation), begin);
-  if (run_.schedule.is_held_in(run_.node->current_step())) {
+  // A run that is paused computes on until a redo that is ordered, which takes it back to the state of the pause.
+  if (run_.schedule.is_held_in(run_.node->current_step()) && !run_.node->is_going_back()) {
     wait_in_pause();
     run_.schedule.note_pause(Clock::now() - begin);
     return false;
@@ -163,10 +164,11 @@ bool NodeProcess::wait_until_due() {
 void NodeProcess::wait_in_pause() {
   if (run_.phase != NodePhase::kPaused) run_.enter(NodeEvent::kHeld);
   run_.publish();
-  run_.node->ready();
+  const bool is_checked = run_.node->stand();
   run_.endpoints.observers().while_paused(*run_.node);
-  // Observers wait for the states of bodies that are under way to this node.
-  if (run_.node->has_all_until(run_.node->current_step())) {
+  // Observers wait until all nodes have checked the state, and for the states of bodies that are under way to this
+  // node.
+  if (is_checked && run_.node->has_all_until(run_.node->current_step())) {
     run_.control().wait(20ms);
   } else {
     run_.transport().wait_for_arrival(2ms);
@@ -203,8 +205,8 @@ void NodeProcess::compute_step() {
   changing_.take_reached_changes();
 }
 
-/// Notes a redo, which all nodes do after the same state. Observers keep the states that they have until the run has
-/// computed them again.
+/// Notes a redo, which all nodes do after the same state. Observers have no state that is computed again with another
+/// result.
 void NodeProcess::note_redo(const node::StepReport& report) {
   const core::TogetherPair first = report.put_back_for.empty() ? core::TogetherPair{} : report.put_back_for.front();
   const std::string news = fmt::format(
@@ -214,10 +216,11 @@ void NodeProcess::note_redo(const node::StepReport& report) {
                                      : std::string());
   spdlog::info("region {} {}", core::value_of(run_.options.region), news);
   run_.notices.note_news(news);
-  run_.saving.look_at_doubtful(*run_.node, report.step);
+  // A redo for a pair gives the states that all nodes have checked the same bits again.
+  if (report.put_back_for_static) run_.saving.look_at_doubtful(*run_.node, report.step);
   run_.note_messages_of_saves();
   run_.status.content().redos = run_.node->redos();
-  run_.endpoints.observers().put_back();
+  run_.endpoints.put_back(report.step);
   run_.record(run_.node->confirmed());
   run_.schedule.note_computed(Clock::now());
   run_.publish_running();

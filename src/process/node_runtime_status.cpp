@@ -1,4 +1,6 @@
 // The status that a node publishes some times a second.
+#include <algorithm>
+
 #include <spdlog/spdlog.h>
 
 #include "process/node_runtime.h"
@@ -29,6 +31,8 @@ void NodeRuntime::publish(const std::string& text) {
   const bool waits = phase == NodePhase::kRecovering || phase == NodePhase::kSpare;
   content.generation = waits ? restoration.waits_in() : generation;
   content.step = node ? node->current_step() : 0;
+  // In a pause, later states are computed only on the way to a redo. Nobody else sees them.
+  if (node && schedule.holds_at() && node->is_going_back()) content.step = std::min(content.step, *schedule.holds_at());
   if (endpoints.has_checkpoints()) content.parts = checkpoints().parts();
   if (recovers() && node) recovery.note_kept(control().statuses(), content.era);
   content.setpoints_heard = setpoints.counts().received;

@@ -13,6 +13,12 @@ void ObservationPublisher::begin_generation(core::Generation generation, std::ui
   settings_.generation = generation;
   settings_.map_version = map_version;
   feed_.reset();
+  held_.clear();
+}
+
+void ObservationPublisher::put_back(core::Step step) {
+  feed_.reset();
+  held_.put_back(step);
 }
 
 /// Takes in observers' requests. False if there are none. The node sums up contacts for observers from its next step
@@ -24,6 +30,7 @@ bool ObservationPublisher::look(node::Node& node) {
     is_observed_ = false;
     feed_.reset();
     served_.clear();
+    held_.clear();
     return false;
   }
   const bool wants_contacts = std::ranges::any_of(
@@ -40,24 +47,41 @@ bool ObservationPublisher::look(node::Node& node) {
 void ObservationPublisher::after_step(node::Node& node, const node::StepReport& report) {
   if (!look(node)) return;
   feed_->note(report, node.protocol().departures().open());
-  publish_made_up(node, report);
+  hold_made_up(node, report);
+  hold_present_state(node);
+  held_.give_out(node.shown_step());
+}
+
+/// Composes the present state for all observers that want it.
+void ObservationPublisher::hold_present_state(node::Node& node) {
+  const core::Step step = node.current_step();
   for (const dds::ObservationServer::Asked& asked : server_.asked()) {
-    if (!asked.interest->is_for(report.step)) continue;
-    ObserverPace& pace = served_[asked.key].pace;
-    if (!pace.is_for(report.step, asked.interest->every)) continue;
-    if (publish(node, asked)) {
-      pace.note_sent();
-    } else {
-      pace.note_too_slow();
-    }
+    if (!asked.interest->is_for(step)) continue;
+    Served& served = served_[asked.key];
+    const State now{asked.arrivals, settings_.generation, node.redos(), step};
+    const State& last = served.published.state;
+    const bool has_it = last.arrivals == now.arrivals && last.generation == now.generation && last.step >= step;
+    if (has_it || !served.pace.is_for(step, asked.interest->every)) continue;
+    const auto give = [this, key = asked.key, now, observation = compose(node, *asked.interest)]() mutable {
+      ObserverPace& pace = served_[key].pace;
+      if (publish(key, now, observation)) {
+        pace.note_sent();
+      } else {
+        pace.note_too_slow();
+      }
+    };
+    held_.add(step, give);
   }
 }
 
 void ObservationPublisher::while_paused(node::Node& node) {
-  if (!look(node)) return;
+  if (!look(node) || node.shown_step() < node.current_step()) return;
+  held_.give_out(node.shown_step());
   for (const dds::ObservationServer::Asked& asked : server_.asked()) {
     const State now{asked.arrivals, settings_.generation, node.redos(), node.current_step()};
-    if (served_[asked.key].published.state != now) publish(node, asked);
+    if (served_[asked.key].published.state == now) continue;
+    core::Observation observation = compose(node, *asked.interest);
+    publish(asked.key, now, observation);
   }
   publish_foreseen(node);
 }
@@ -77,27 +101,33 @@ void ObservationPublisher::publish_foreseen(node::Node& node) {
   }
 }
 
-bool ObservationPublisher::publish(node::Node& node, const dds::ObservationServer::Asked& asked) {
-  if (!server_.takes_more(asked.key)) return false;
-  Published& published = served_[asked.key].published;
-  const State now{asked.arrivals, settings_.generation, node.redos(), node.current_step()};
+core::Observation ObservationPublisher::compose(node::Node& node, const core::Interest& interest) const {
   core::Observation observation =
-      feed_->compose(*asked.interest, node.world().snapshot(), node.world().contact_impulses(), node.redos());
+      feed_->compose(interest, node.world().snapshot(), node.world().contact_impulses(), node.redos());
   observation.scene_order = node.newest_scene_order();
-  const bool goes_on = published.state.arrivals == now.arrivals && published.state.generation == now.generation &&
-                       published.state.redo == now.redo;
-  if (goes_on && published.state.step < now.step) observation.previous = published.state.step;
-  if (!server_.send(asked.key, observation)) return false;
-  published = {now, 0};
+  return observation;
+}
+
+/// Publishes a state to one observer. False if it takes no more now.
+bool ObservationPublisher::publish(std::uint64_t observer, const State& state, core::Observation& observation) {
+  if (!server_.takes_more(observer)) return false;
+  Published& published = served_[observer].published;
+  const bool is_next = published.state.redo == state.redo && published.state.goes_on_with(state);
+  if (is_next) observation.previous = published.state.step;
+  if (!server_.send(observer, observation)) return false;
+  published = {state, 0};
   return true;
 }
 
-void ObservationPublisher::publish_made_up(const node::Node& node, const node::StepReport& report) {
+/// Composes states that bodies which have joined late have made up.
+void ObservationPublisher::hold_made_up(const node::Node& node, const node::StepReport& report) {
   for (const node::MadeUp& state : report.made_up) {
     for (const dds::ObservationServer::Asked& asked : server_.asked()) {
-      if (asked.interest->is_for(state.step)) {
-        server_.send(asked.key, feed_->compose(*asked.interest, state, node.redos()));
-      }
+      if (!asked.interest->is_for(state.step)) continue;
+      held_.add(state.step,
+                [this, key = asked.key, observation = feed_->compose(*asked.interest, state, node.redos())] {
+                  server_.send(key, observation);
+                });
     }
   }
 }

@@ -1,5 +1,7 @@
 #include "process/replica_publisher.h"
 
+#include <algorithm>
+
 #include "node/cluster_graph.h"
 
 namespace aurasim::process {
@@ -23,24 +25,30 @@ ReplicaPublisher::ReplicaPublisher(const config::Launch& launch, dds::Participan
 void ReplicaPublisher::begin_generation(core::Generation generation) {
   feed_.emplace(region_, generation, map_version_);
   generation_ = generation;
-  published_ = -1;
+  composed_ = published_ = -1;
+  held_.clear();
   observations_.begin_generation(generation, map_version_);
 }
 
-void ReplicaPublisher::put_back() {
+void ReplicaPublisher::put_back(core::Step step) {
   if (feed_) feed_->forget();
   last_key_frame_ = {};
-  observations_.put_back();
+  held_.put_back(step);
+  composed_ = std::max(published_, std::min(composed_, step));
+  observations_.put_back(step);
 }
 
 void ReplicaPublisher::after_step(node::Node& node, const node::StepReport& report) {
   observations_.after_step(node, report);
   if (!writer_.anybody_listens()) {
     feed_->forget();
+    held_.clear();
+    composed_ = published_;
     return;
   }
   feed_->note(report);
-  if (report.step % tick_steps_ == 0 && report.step > published_) publish(node);
+  if (report.step % tick_steps_ == 0 && report.step > composed_) compose(node);
+  held_.give_out(node.shown_step());
 }
 
 void ReplicaPublisher::while_paused(node::Node& node) {
@@ -48,7 +56,9 @@ void ReplicaPublisher::while_paused(node::Node& node) {
   if (!writer_.anybody_listens()) return;
   // The cluster graph is repeated, because lost samples are not retransmitted.
   if (Clock::now() - last_graph_ >= kClusterGraphPeriod) publish_cluster_graph(node);
-  if (published_ != node.current_step() || arrivals_ != writer_.arrivals() || key_frame_is_due()) publish(node);
+  if (node.shown_step() < node.current_step()) return;
+  if (composed_ != node.current_step() || arrivals_ != writer_.arrivals() || key_frame_is_due()) compose(node);
+  held_.give_out(node.shown_step());
 }
 
 /// True if a key frame is due. A new observer gets one at once, because the last one may be older than its arrival.
@@ -63,15 +73,21 @@ void ReplicaPublisher::publish_census(node::Node& node, core::Generation generat
   writer_.send(feed_->compose_key_frame(node.world().snapshot(), {}));
 }
 
-void ReplicaPublisher::publish(node::Node& node) {
+/// Composes the present state, which is published once it is certain.
+void ReplicaPublisher::compose(node::Node& node) {
   const core::Snapshot& snapshot = node.world().snapshot();
-  published_ = snapshot.step;
-  writer_.send(feed_->compose_changes(snapshot));
+  composed_ = snapshot.step;
+  held_.add(composed_, [this, replica = feed_->compose_changes(snapshot)] {
+    published_ = replica.stamp;
+    writer_.send(replica);
+  });
   publish_cluster_graph(node);
   if (!key_frame_is_due()) return;
   arrivals_ = writer_.arrivals();
   last_key_frame_ = Clock::now();
-  writer_.send(feed_->compose_key_frame(snapshot, node.protocol().departures().open()));
+  held_.add(composed_, [this, replica = feed_->compose_key_frame(snapshot, node.protocol().departures().open())] {
+    writer_.send(replica);
+  });
 }
 
 void ReplicaPublisher::publish_cluster_graph(node::Node& node) {

@@ -19,9 +19,9 @@ class ReplicaPublisher {
   ReplicaPublisher(const config::Launch& launch, dds::Participant& participant, core::RegionId region);
 
   void begin_generation(core::Generation generation);
-  /// To be called when the run goes back. Nothing is published until the run is where it was; then everything is
-  /// published anew.
-  void put_back();
+  /// To be called when the run goes back to state `step`. Later states that have not been published yet are published
+  /// when they have been computed again, the first of them as a key frame.
+  void put_back(core::Step step);
   /// Publishes the bodies hosted here as a key frame of `generation`, even without observers.
   void publish_census(node::Node& node, core::Generation generation);
   void use_map(std::uint64_t map_version) { map_version_ = map_version; }
@@ -31,7 +31,7 @@ class ReplicaPublisher {
   void while_paused(node::Node& node);
 
  private:
-  void publish(node::Node& node);
+  void compose(node::Node& node);
   void publish_cluster_graph(node::Node& node);
   bool key_frame_is_due() const;
 
@@ -43,7 +43,9 @@ class ReplicaPublisher {
   ObservationPublisher observations_;
   std::optional<node::ReplicaFeed> feed_;
   core::Generation generation_ = 0;
+  core::Step composed_ = -1;  ///< the newest state that is published or held back
   core::Step published_ = -1;
+  HeldBack held_;
   std::uint64_t arrivals_ = 0;  ///< number of arrivals of observers that have got a key frame
   std::chrono::steady_clock::time_point last_key_frame_;
   std::chrono::steady_clock::time_point last_graph_;

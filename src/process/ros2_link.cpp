@@ -1,5 +1,6 @@
 #include "process/ros2_link.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "node/replica_feed.h"
@@ -35,10 +36,16 @@ void Ros2Link::begin(core::Generation generation) {
   names_.emplace(launch_);
   joints_.emplace(launch_.scene);
   next_ = 0;
+  published_ = -1;
+  held_.clear();
 }
 
-/// True if state `step` is to be published. States that are computed again are not published again: ROS's time would go
-/// back.
+void Ros2Link::put_back(core::Step step) {
+  held_.put_back(step);
+  next_ = std::min(next_, (std::max(published_, step) / tick_steps_ + 1) * tick_steps_);
+}
+
+/// True if state `step` is to be published. No state is published twice, because ROS's time would go back.
 bool Ros2Link::is_due(core::Step step) {
   const Clock::time_point now = Clock::now();
   const std::uint64_t arrivals = bus_.arrivals();
@@ -55,23 +62,31 @@ bool Ros2Link::is_due(core::Step step) {
 
 void Ros2Link::publish(node::Node& node, core::Generation generation, bool leads) {
   if (generation_ != generation) begin(generation);
+  held_.give_out(node.shown_step());
   if (!is_due(node.current_step())) return;
-  const dds::Ros2Time now = ros2_time(node.current_step(), launch_.time.step_hz);
-  if (leads && bus_.wants_clock()) bus_.say_clock(now);
+  const core::Step step = node.current_step();
+  const dds::Ros2Time now = ros2_time(step, launch_.time.step_hz);
   const bool wants_joints = !joints_->empty() && bus_.wants_joints();
-  if (!wants_joints && !bus_.wants_tf()) return;
   const core::Snapshot& snapshot = node.world().snapshot();
-  if (bus_.wants_tf()) publish_bodies(snapshot, now);
-  if (!wants_joints) return;
-  if (const dds::Ros2Joints joints = joints_->in(snapshot); !joints.name.empty()) bus_.say_joints(now, joints);
+  std::vector<dds::Ros2Transform> transforms;
+  if (bus_.wants_tf()) transforms = transforms_of(snapshot);
+  dds::Ros2Joints joints;
+  if (wants_joints) joints = joints_->in(snapshot);
+  held_.add(step, [this, step, now, leads, transforms = std::move(transforms), joints = std::move(joints)] {
+    published_ = step;
+    if (leads && bus_.wants_clock()) bus_.say_clock(now);
+    if (bus_.wants_tf()) bus_.say_tf(now, transforms);
+    if (!joints.name.empty()) bus_.say_joints(now, joints);
+  });
+  held_.give_out(node.shown_step());
 }
 
-void Ros2Link::publish_bodies(const core::Snapshot& snapshot, dds::Ros2Time now) {
-  transforms_.clear();
+std::vector<dds::Ros2Transform> Ros2Link::transforms_of(const core::Snapshot& snapshot) const {
+  std::vector<dds::Ros2Transform> transforms;
   for (const core::BodyState& body : snapshot.bodies) {
-    if (body.birth <= snapshot.step) transforms_.push_back({names_->of(body.id), body.pose});
+    if (body.birth <= snapshot.step) transforms.push_back({names_->of(body.id), body.pose});
   }
-  bus_.say_tf(now, transforms_);
+  return transforms;
 }
 
 std::vector<core::Setpoints> Ros2Link::take(core::Generation generation) {

@@ -11,6 +11,7 @@
 #include "core/setpoint.h"
 #include "dds/ros2_bus.h"
 #include "node/node.h"
+#include "process/held_back.h"
 #include "process/ros2_view.h"
 
 namespace aurasim::process {
@@ -20,9 +21,12 @@ class Ros2Link {
   /// `launch` must outlive the link and is the run's present launch: its scene may change with the generation.
   Ros2Link(const config::Launch& launch, core::RegionId region);
 
-  /// Publishes what is due of the newest state, and in a paused run sends it to readers that have just come. May be
-  /// called as often as wanted between two states. `leads`: this node also publishes the time.
+  /// Publishes what is due of the states that are certain, and in a paused run sends the present one to readers that
+  /// have just come. May be called as often as wanted between two states. `leads`: this node also publishes the time.
   void publish(node::Node& node, core::Generation generation, bool leads);
+  /// To be called when the run goes back to state `step`. Later states that have not been published yet are published
+  /// when they have been computed again.
+  void put_back(core::Step step);
   /// Messages received since the last call, as setpoints that name no state.
   std::vector<core::Setpoints> take(core::Generation generation);
   std::uint64_t refused() const { return bus_.refused(); }
@@ -30,7 +34,7 @@ class Ros2Link {
  private:
   bool is_due(core::Step step);
   void begin(core::Generation generation);
-  void publish_bodies(const core::Snapshot& snapshot, dds::Ros2Time now);
+  std::vector<dds::Ros2Transform> transforms_of(const core::Snapshot& snapshot) const;
 
   const config::Launch& launch_;
   dds::Ros2Bus bus_;
@@ -38,8 +42,9 @@ class Ros2Link {
   std::optional<core::Generation> generation_;  ///< generation that names_ and joints_ belong to
   std::optional<FrameNames> names_;
   std::optional<JointRows> joints_;
-  std::vector<dds::Ros2Transform> transforms_;  ///< reused
-  core::Step next_ = 0;                         ///< the next state that is due
+  HeldBack held_;
+  core::Step next_ = 0;  ///< the next state that is due
+  core::Step published_ = -1;
   std::uint64_t arrivals_ = 0;
   std::optional<std::chrono::steady_clock::time_point> somebody_came_at_;  ///< when a reader last came
 };

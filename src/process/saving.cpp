@@ -102,6 +102,7 @@ void Saving::save_as_it_stands(node::Node& node, CommandServer& server) {
                                 save.step));
       return true;
     }
+    if (save.step > node.shown_step()) return false;  // not all nodes have checked the state yet
     std::optional<core::WorldCut> part = node.present_part();
     if (!part) return false;
     if (save.step > node.confirmed_step()) doubtful_.push_back(save);
@@ -115,8 +116,8 @@ void Saving::look_at_doubtful(const node::Node& node, std::optional<core::Step> 
   std::erase_if(doubtful_, [&](const StandingSave& save) {
     if (!back_to || save.step <= *back_to) return save.step <= node.confirmed_step();
     report(
-        fmt::format("{} is void: it was saved in state {}, which is computed again because bodies had touched on two "
-                    "nodes. Save the world again",
+        fmt::format("{} is void: it was saved in state {}, which is computed again because a static was not where its "
+                    "order puts it. Save the world again",
                     save.file, save.step));
     return true;
   });

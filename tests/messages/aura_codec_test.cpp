@@ -103,6 +103,19 @@ TEST(AuraCodec, WhatTheCheckNeedsComesBackToTheBit) {
   EXPECT_EQ(got.past[0].pose.p_WB, batch.past[0].pose.p_WB) << "places are not rounded";
 }
 
+TEST(AuraCodec, AWordMayHaveTheStateInWhichTheRunStands) {
+  core::AuraBatch word = batch_with_past();
+  word.word = 2;
+  word.past[0].stamp = word.stamp;
+  const auto decoded = decode(encoded(word), expected());
+  ASSERT_TRUE(std::holds_alternative<core::AuraBatch>(decoded));
+  EXPECT_EQ(std::get<core::AuraBatch>(decoded).word, 2u);
+  EXPECT_EQ(std::get<core::AuraBatch>(decoded).past[0].stamp, word.stamp);
+  wire::AuraBatch later = encoded(word);
+  later.past_stamp()[0] = later.stamp() + 1;
+  EXPECT_TRUE(std::holds_alternative<WireError>(decode(later, expected())));
+}
+
 TEST(AuraCodec, ChecksThatMakeNoSenseAreRefused) {
   const auto refused = [](auto&& spoil) {
     wire::AuraBatch wrong = encoded(batch_with_past());
