@@ -70,7 +70,7 @@ struct DynamicsWorld::Bullet {
   FirstContacts first_contacts;
   ContactImpulses contact_impulses;
   std::vector<btRigidBody*> moving_statics;
-  std::unique_ptr<btDiscreteDynamicsWorld> world;
+  std::unique_ptr<World> world;
   bool sums_itself;  ///< the soft step adds contact impulses itself
 };
 
@@ -115,6 +115,18 @@ void DynamicsWorld::remove(std::span<btRigidBody* const> bodies) {
   for (btRigidBody* body : bodies) {
     if (is_moving_static(*body)) std::erase(bullet_->moving_statics, body);
     bullet_->world->removeRigidBody(body);
+  }
+}
+
+void DynamicsWorld::move(btRigidBody& body) { bullet_->world->updateSingleAabb(&body); }
+
+void DynamicsWorld::forget_past() {
+  bullet_->world->forget_past();
+  const std::span<btPersistentManifold* const> all = manifolds();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i + kPrefetchDistance < all.size()) prefetch_head(*all[i + kPrefetchDistance]);
+    all[i]->clearManifold();
+    bullet_->first_contacts.forget(*all[i]);
   }
 }
 

@@ -29,6 +29,11 @@ class DynamicsWorld {
   /// Removes bodies with all their contacts.
   void remove(std::span<btRigidBody* const> bodies);
 
+  /// Updates the bounds of a body that has been moved from outside.
+  void move(btRigidBody& body);
+  /// Forgets all contacts, and whatever else this world remembers of earlier states. Its bodies, pairs and joints stay.
+  void forget_past();
+
   /// Turns a static of this world into one that moves (physics/moving_static.h).
   void begin_moving(btRigidBody& fixed);
   /// Widens the broadphase's bounds of a static that goes to `until` in the next step, so that they hold its way.

@@ -92,6 +92,8 @@ void FirstContacts::add(const FirstContact& contact, const btBroadphasePair& pai
   for (const PartManifold& part : of_pair_) know(*part.manifold);
 }
 
+void FirstContacts::forget(btPersistentManifold& manifold) { manifold.m_companionIdA = manifold.m_companionIdB = 0; }
+
 void FirstContacts::know(btPersistentManifold& manifold) const {
   manifold.m_companionIdA = static_cast<int>(now_);
   manifold.m_companionIdB = static_cast<int>(now_ - 1);

@@ -40,6 +40,9 @@ class FirstContacts {
   /// or its bodies slept until now.
   void know(btPersistentManifold& manifold) const;
 
+  /// Marks a manifold as one that has never had a point.
+  static void forget(btPersistentManifold& manifold);
+
   /// First contacts since the last clear(), in order of substeps. A pair may be listed more than once.
   const std::vector<FirstContact>& found() const { return found_; }
   void clear() { found_.clear(); }

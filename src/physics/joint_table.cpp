@@ -130,20 +130,41 @@ void JointTable::write_values(const Entry& entry, std::span<double> values) cons
 }
 
 void JointTable::connect(core::BodyId body, BodyTable& bodies, DynamicsWorld& world) {
-  for (const core::JointId id : joints_of(body)) {
-    const core::JointSpec& joint = scene_->joints[core::value_of(id)];
-    Entry& entry = entries_[core::value_of(id)];
-    if (entry.constraint || entry.broken) continue;
-    btRigidBody* const a = born_body(bodies, joint.a);
-    btRigidBody* const b = joint.b ? born_body(bodies, *joint.b) : ground_.get();
-    if (a == nullptr || b == nullptr) continue;
-    entry.constraint = make_constraint(joint, entry.axes.frames, *a, *b, substep_s_);
-    entry.constraint->setUserConstraintPtr(&entry.axes);
-    if (!is_soft_) entry.constraint->internalSetAppliedImpulse(scalar(entry.axes.drive_impulse));
-    if (entry.axes.own) measure_again(entry, 0);
-    world.connect(*entry.constraint, static_cast<int>(core::value_of(id)), joint.collide || !joint.b);
-    connected_.insert(std::lower_bound(connected_.begin(), connected_.end(), id), id);
+  for (const core::JointId id : joints_of(body)) connect(id, bodies, world);
+}
+
+void JointTable::connect(core::JointId id, BodyTable& bodies, DynamicsWorld& world) {
+  const core::JointSpec& joint = scene_->joints[core::value_of(id)];
+  Entry& entry = entries_[core::value_of(id)];
+  if (entry.constraint || entry.broken) return;
+  btRigidBody* const a = born_body(bodies, joint.a);
+  btRigidBody* const b = joint.b ? born_body(bodies, *joint.b) : ground_.get();
+  if (a == nullptr || b == nullptr) return;
+  entry.constraint = make_constraint(joint, entry.axes.frames, *a, *b, substep_s_);
+  entry.constraint->setUserConstraintPtr(&entry.axes);
+  begin(entry);
+  world.connect(*entry.constraint, static_cast<int>(core::value_of(id)), joint.collide || !joint.b);
+  connected_.insert(std::lower_bound(connected_.begin(), connected_.end(), id), id);
+}
+
+/// Gives a joint's constraint the state that its entry has.
+void JointTable::begin(Entry& entry) {
+  entry.constraint->internalSetAppliedImpulse(is_soft_ ? 0 : scalar(entry.axes.drive_impulse));
+  if (entry.axes.own) measure_again(entry, 0);
+}
+
+void JointTable::put_back(const core::ClusterState& then, BodyTable& bodies, DynamicsWorld& world) {
+  forget();
+  restore(then, bodies);
+  for (std::uint32_t i = 0; i < entries_.size(); ++i) {
+    if (entries_[i].constraint && entries_[i].broken) disconnect(entries_[i], world);
+    if (entries_[i].constraint) {
+      begin(entries_[i]);
+    } else {
+      connect(core::JointId{i}, bodies, world);
+    }
   }
+  forget_broken_off();
 }
 
 void JointTable::disconnect(Entry& entry, DynamicsWorld& world) {
@@ -162,6 +183,10 @@ void JointTable::disconnect(const core::ClusterState& leaving, BodyTable& bodies
       if (!stays(joint.a) && !(joint.b && stays(*joint.b))) forget(id);
     }
   }
+  forget_broken_off();
+}
+
+void JointTable::forget_broken_off() {
   std::erase_if(connected_, [this](core::JointId id) { return !entries_[core::value_of(id)].constraint; });
 }
 
@@ -222,6 +247,8 @@ void JointTable::forget(core::JointId id) {
   if (entry.driven_anew) entry.axes.drive = core::drive_of(scene_->joints[core::value_of(id)].kind);
   entry.broken = entry.driven_anew = false;
   entry.axes.position = entry.axes.turns_rad = entry.axes.drive_impulse = entry.speed = 0;
+  entry.axes.lead = entry.axes.lead_speed = 0;
+  entry.axes.lost_its_leader = false;
 }
 
 void JointTable::forget() {

@@ -33,11 +33,14 @@ class JointTable {
   void connect(core::BodyId body, BodyTable& bodies, DynamicsWorld& world);
   /// Removes the joints of bodies that are about to leave.
   void disconnect(const core::ClusterState& leaving, BodyTable& bodies, DynamicsWorld& world);
+  /// Sets all joints to the states of `then`, the bodies of which are all bodies here. Joints that are in Bullet's
+  /// world and unbroken stay there.
+  void put_back(const core::ClusterState& then, BodyTable& bodies, DynamicsWorld& world);
   /// Updates coupled joints with the positions of their leaders. Call before each look for contacts.
   void follow();
   /// Call after a look's substeps: removes joints that broke in them for good, and counts the turns of hinges.
   void finish_look(DynamicsWorld& world);
-  /// Resets all joints. Only while there are no bodies: clusters that join bring the states of their joints.
+  /// Resets all joints. Clusters that join bring the states of their joints.
   void forget();
 
   /// Replaces the drive of a hinge or slider from the next step on, until it breaks. Hand-offs of its bodies carry the
@@ -73,7 +76,10 @@ class JointTable {
   };
 
   const std::vector<core::JointId>& joints_of(core::BodyId body) const;
+  void connect(core::JointId id, BodyTable& bodies, DynamicsWorld& world);
+  void begin(Entry& entry);
   void disconnect(Entry& entry, DynamicsWorld& world);
+  void forget_broken_off();
   void read_values(std::span<const double> values, Entry& entry) const;
   std::size_t value_count(const Entry& entry) const;
   void write_values(const Entry& entry, std::span<double> values) const;

@@ -81,9 +81,7 @@ core::ClusterState RegionWorld::peek_all() const {
 void RegionWorld::copy_all(core::ClusterState& all) const { impl_->simulation.copy_all(all); }
 
 void RegionWorld::put_back(core::Step step, const core::ClusterState& bodies) {
-  impl_->simulation.release(impl_->simulation.body_ids());
-  impl_->simulation.start_at(step);
-  impl_->simulation.join(bodies);
+  impl_->simulation.put_back(step, bodies);
   impl_->made_up.clear();
   impl_->collisions.clear();
   take_removed();

@@ -82,7 +82,6 @@ HostedBody Simulation::make_body(const core::BodyRecord& record) const {
   const core::Prototype& prototype = scene_->prototypes.at(core::value_of(record.prototype));
   auto info = construction_of(prototype.mass_kg, shapes_->shape(prototype.shape), shapes_->inertia(record.prototype),
                               scene_->materials.at(prototype.material));
-  info.m_startWorldTransform = btTransform(to_bullet(record.R_WB), to_bullet(record.p_WB));
 
   HostedBody body{record.id, record.epoch, record.prototype, record.birth, false, std::make_unique<btRigidBody>(info)};
   body.rigid->setFlags(0);  // no gyroscopic torque: see free_rotation.h
@@ -92,12 +91,20 @@ HostedBody Simulation::make_body(const core::BodyRecord& record) const {
     body.rigid->setCcdMotionThreshold(thin);
     body.rigid->setCcdSweptSphereRadius(btScalar(0.9) * thin);
   }
-  body.rigid->setLinearVelocity(to_bullet(record.v_WB));
-  body.rigid->setAngularVelocity(to_bullet(record.w_WB));
-  const bool keeps_state = prototype.can_sleep || record.activation_state == DISABLE_SIMULATION;
-  body.rigid->forceActivationState(keeps_state ? record.activation_state : DISABLE_DEACTIVATION);
-  body.rigid->setDeactivationTime(static_cast<btScalar>(record.deactivation_time));
+  set_motion(*body.rigid, record);
   return body;
+}
+
+/// Gives a body the state of a record, whatever its state was before.
+void Simulation::set_motion(btRigidBody& rigid, const core::BodyRecord& record) const {
+  rigid.setLinearVelocity(to_bullet(record.v_WB));
+  rigid.setAngularVelocity(to_bullet(record.w_WB));
+  rigid.setCenterOfMassTransform(btTransform(to_bullet(record.R_WB), to_bullet(record.p_WB)));
+  rigid.clearForces();
+  const bool can_sleep = scene_->prototypes[core::value_of(record.prototype)].can_sleep;
+  const bool keeps_state = can_sleep || record.activation_state == DISABLE_SIMULATION;
+  rigid.forceActivationState(keeps_state ? record.activation_state : DISABLE_DEACTIVATION);
+  rigid.setDeactivationTime(static_cast<btScalar>(record.deactivation_time));
 }
 
 void Simulation::add(std::span<const core::BodyRecord> bodies) {

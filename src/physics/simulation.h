@@ -37,6 +37,8 @@ class Simulation {
   void start_at(core::Step step);
 
   void add(std::span<const core::BodyRecord> bodies);
+  /// See RegionWorld::put_back(). Bodies, pairs and joints of both states stay in Bullet's world.
+  void put_back(core::Step step, const core::ClusterState& then);
   /// Like add(), but with the contact cache and joints. The cluster has to be in state step_number().
   void join(const core::ClusterState& cluster);
   core::ClusterState release(std::span<const core::BodyId> bodies);
@@ -102,6 +104,8 @@ class Simulation {
   core::Step foreseen() const { return static_cast<core::Step>(std::ceil(settings_.foresight_s / settings_.step_s)); }
   void put_in(std::span<const core::BodyRecord> bodies);
   HostedBody make_body(const core::BodyRecord& record) const;
+  void set_motion(btRigidBody& rigid, const core::BodyRecord& record) const;
+  std::vector<core::BodyRecord> take_out_all_but(std::span<const core::BodyRecord> bodies, core::Step step);
   int rank_of(core::BodyId id) const;
   btRigidBody* find_object(core::ObjectRef ref);
   core::ObjectRef ref_of(const btCollisionObject& object) const;

@@ -20,10 +20,10 @@ namespace aurasim::physics {
 namespace {
 
 /// Bullet's world with our islands. First contacts are noted before contacts are solved.
-class Stepper final : public btDiscreteDynamicsWorld {
+class Stepper final : public World {
  public:
   Stepper(const WorldParts& parts, const Settings& settings)
-      : btDiscreteDynamicsWorld(&parts.dispatcher, &parts.broadphase, &parts.solver, &parts.configuration),
+      : World(&parts.dispatcher, &parts.broadphase, &parts.solver, &parts.configuration),
         first_contacts_(parts.first_contacts),
         sweeps_(settings.continuous) {
     getSolverInfo().m_numIterations = settings.solver_iterations;
@@ -90,7 +90,7 @@ class Stepper final : public btDiscreteDynamicsWorld {
 
 }  // namespace
 
-std::unique_ptr<btDiscreteDynamicsWorld> make_stepper(const WorldParts& parts, const Settings& settings) {
+std::unique_ptr<World> make_stepper(const WorldParts& parts, const Settings& settings) {
   return std::make_unique<Stepper>(parts, settings);
 }
 

@@ -23,6 +23,15 @@ struct WorldParts {
   const std::vector<btRigidBody*>& moving_statics;
 };
 
-std::unique_ptr<btDiscreteDynamicsWorld> make_stepper(const WorldParts& parts, const Settings& settings);
+/// Bullet's world, as each solver extends it.
+class World : public btDiscreteDynamicsWorld {
+ public:
+  using btDiscreteDynamicsWorld::btDiscreteDynamicsWorld;
+
+  /// Forgets what this world remembers of earlier states. Its bodies, pairs and joints stay.
+  virtual void forget_past() {}
+};
+
+std::unique_ptr<World> make_stepper(const WorldParts& parts, const Settings& settings);
 
 }  // namespace aurasim::physics

@@ -1,5 +1,7 @@
 // What it costs to keep a world: 5,000 boxes in loose piles, at rest on each other. To capture is what a step pays; the
-// file is written beside the run.
+// file is written beside the run. Also what a redo pays: to keep a cut, and to go back to it.
+#include <ctime>
+
 #include <benchmark/benchmark.h>
 
 #include "cut/cut_file.h"
@@ -78,6 +80,61 @@ void put_back_world(benchmark::State& state) {
   }
 }
 
+/// A heap of 2,000 boxes, and `bodies` - 2,000 that fly above it.
+Scene heap_and_rain(std::size_t bodies) {
+  Scene scene = piles(bodies);
+  for (std::size_t i = 0; i < bodies; ++i) {
+    InitialBody& body = scene.bodies[i];
+    const bool flies = i >= 2000;
+    const std::size_t side = flies ? 40 : 20, n = flies ? i - 2000 : i;
+    const double apart = flies ? 2.5 : 1.02;
+    body.pose.p_WB = {apart * static_cast<double>(n % side) + 0.1 * static_cast<double>(n % 7),
+                      apart * static_cast<double>(n / side % side) + 0.1 * static_cast<double>(n % 5),
+                      (flies ? 20 : 0.5) + (flies ? 2.5 : 1.01) * static_cast<double>(n / side / side)};
+    if (flies) body.v_WB = {3.0 - static_cast<double>(n % 7), 3.0 - static_cast<double>(n % 5), 4};
+  }
+  return scene;
+}
+
+struct RainRun {
+  explicit RainRun(std::size_t bodies) : scene(heap_and_rain(bodies)), world(scene, Run::settings()) {
+    std::vector<BodyRecord> records;
+    for (const InitialBody& body : scene.bodies) records.push_back(initial_record(body));
+    world.add(records);
+    for (int i = 0; i < 60; ++i) world.step();
+  }
+  Scene scene;
+  physics::RegionWorld world;
+};
+
+void take_cut(benchmark::State& state) {
+  const RainRun run(static_cast<std::size_t>(state.range(0)));
+  ClusterState cut;
+  for (auto _ : state) run.world.copy_all(cut);
+  state.counters["points"] = static_cast<double>(cut.points.size() / kContactPointDoubles);
+}
+
+/// A world goes back by `states` states. CPU time.
+void go_back(benchmark::State& state) {
+  RainRun run(static_cast<std::size_t>(state.range(0)));
+  const ClusterState cut = run.world.peek_all();
+  const Step then = run.world.step_number();
+  for (auto _ : state) {
+    for (int i = 0; i < state.range(1); ++i) run.world.step();
+    const std::clock_t begin = std::clock();
+    run.world.put_back(then, cut);
+    state.SetIterationTime(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
+  }
+  state.counters["manifolds"] = static_cast<double>(cut.manifolds.size());
+}
+
+BENCHMARK(take_cut)->Arg(5000)->Unit(benchmark::kMillisecond);
+BENCHMARK(go_back)
+    ->ArgNames({"bodies", "states"})
+    ->ArgsProduct({{5000}, {5, 20}})
+    ->UseManualTime()
+    ->Iterations(10)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK(capture_world)->Arg(500)->Arg(5000)->Unit(benchmark::kMillisecond);
 BENCHMARK(encode_world)->Arg(500)->Arg(5000)->Unit(benchmark::kMillisecond);
 BENCHMARK(decode_world)->Arg(500)->Arg(5000)->Unit(benchmark::kMillisecond);

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <optional>
 
 #include <gtest/gtest.h>
@@ -17,70 +16,6 @@ using core::BodyRecord;
 using core::ClusterState;
 using core::Step;
 using core::Vec3;
-
-/// A creature of all kinds of joints at (x, 0), thrown onto the ground: a box with a leg of every kind, of which that
-/// on the spring ends in a chain.
-std::vector<BodyId> place_creature(core::Scene& scene, double x, const Vec3& v_WB) {
-  const std::uint64_t first = scene.bodies.size();
-  core::SpringJoint spring;
-  for (std::size_t i = 0; i < 6; ++i) spring.axes[i] = {core::JointLimits{-0.2, 0.2}, i < 3 ? 300.0 : 20.0, 1};
-  const core::HingeJoint motor{{}, core::JointMotor{4, 0.05}};
-  const core::HingeJoint limited{core::JointLimits{-0.5, 0.5}, {}};
-  const core::JointKind kinds[] = {core::BallJoint{},  motor, limited, core::SliderJoint{core::JointLimits{-0.2, 0.3}},
-                                   core::FixedJoint{}, spring};
-  place_body(scene, kBox, {x, 0, 3});
-  for (std::size_t i = 0; i < 6; ++i) {
-    const double angle = 1.1 * static_cast<double>(i);
-    const Vec3 outward(std::cos(angle), std::sin(angle), 0.2);
-    const auto leg = scene.bodies.size();
-    place_body(scene, static_cast<int>(i) % 3, Vec3(x, 0, 3) + outward);
-    // The motor's leg comes last in the order of ids but first in that of joints, and so on: no order is the other's.
-    if (i % 2 == 0) {
-      add_joint(scene, kinds[i], first, leg, Vec3(x, 0, 3) + 0.5 * outward, outward.cross(Vec3::UnitZ()).normalized());
-    } else {
-      add_joint(scene, kinds[i], leg, first, Vec3(x, 0, 3) + 0.5 * outward, outward.normalized());
-    }
-  }
-  for (int i = 0; i < 4; ++i) {
-    const auto last = scene.bodies.size() - 1;
-    const Vec3 end = scene.bodies.back().pose.p_WB;
-    place_body(scene, kCapsule, end + Vec3(0, 0, 1.3));
-    add_joint(scene, core::BallJoint{}, last + 1, last, end + Vec3(0, 0, 0.65)).collide = true;
-    scene.joints.back().break_impulse = i == 3 ? 0.35 : 1e6;
-  }
-  std::vector<BodyId> ids;
-  for (std::uint64_t id = first; id < scene.bodies.size(); ++id) {
-    scene.bodies[id].v_WB = v_WB;
-    ids.push_back(BodyId{id});
-  }
-  return ids;
-}
-
-/// A box that drives: two wheels on hinges, of which one turns without end and one goes to and fro by a stiff drive,
-/// a cart with friction on a slider, a clapper on a damped ball joint, and a wheel that follows the cart.
-std::vector<BodyId> place_machine(core::Scene& scene, double x) {
-  const std::uint64_t first = scene.bodies.size();
-  core::HingeJoint endless{core::JointLimits{-std::numeric_limits<double>::infinity(), 60}, {}};
-  endless.drive = core::JointDrive{.speed = 15, .damping = 0.5, .max_effort = 2};
-  core::HingeJoint stiff;
-  stiff.drive = core::JointDrive{.position = 9, .stiffness = 2000, .damping = 20, .max_effort = 5};
-  core::SliderJoint cart;
-  cart.resistance = {.stiffness = 40, .rest = 0.3, .damping = 0.2, .friction = 1};
-  core::HingeJoint follower;
-  follower.drive = core::JointDrive{.stiffness = 5000, .damping = 50, .max_effort = 20};
-  follower.follows = core::JointCoupling{core::JointId{static_cast<std::uint32_t>(scene.joints.size()) + 2}, 3};
-  const core::JointKind kinds[] = {endless, stiff, cart, core::BallJoint{0.05}, follower};
-  place_body(scene, kBox, {x, 0, 3});
-  for (std::size_t i = 0; i < 5; ++i) {
-    const double angle = 1.25 * static_cast<double>(i);
-    const Vec3 outward(std::cos(angle), std::sin(angle), 0.2);
-    place_body(scene, static_cast<int>(i) % 3, Vec3(x, 0, 3) + outward);
-    add_joint(scene, kinds[i], scene.bodies.size() - 1, first, Vec3(x, 0, 3) + 0.5 * outward, outward.normalized());
-  }
-  std::vector<BodyId> ids;
-  for (std::uint64_t id = first; id < scene.bodies.size(); ++id) ids.push_back(BodyId{id});
-  return ids;
-}
 
 core::Scene scene_of_creatures(std::vector<std::vector<BodyId>>& creatures) {
   core::Scene scene = scene_of_all_shapes();

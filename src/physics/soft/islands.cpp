@@ -39,6 +39,11 @@ void SoftIslands::remove(const btRigidBody& body) {
   free_.push_back(slot);
 }
 
+void SoftIslands::forget_past() {
+  std::fill(states_.begin() + 1, states_.end(), std::uint8_t{0});
+  forget_sleepers();
+}
+
 void SoftIslands::call(std::span<btRigidBody* const> bodies) {
   awake_.clear();
   asleep_.clear();

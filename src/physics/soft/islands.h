@@ -23,6 +23,9 @@ class SoftIslands {
   void insert(btRigidBody& body);
   void remove(const btRigidBody& body);
 
+  /// Forgets which bodies slept, as if all of them had just entered the world.
+  void forget_past();
+
   /// Finds the awake bodies at the start of a step.
   void call(std::span<btRigidBody* const> bodies);
   /// Did the body sleep at the last call(), and at the one in the step before? Always true for statics.

@@ -23,10 +23,10 @@ std::span<T* const> span_of(btAlignedObjectArray<T*>& array) {
   return {array.size() > 0 ? &array[0] : nullptr, static_cast<std::size_t>(array.size())};
 }
 
-class SoftWorld final : public btDiscreteDynamicsWorld {
+class SoftWorld final : public World {
  public:
   SoftWorld(const WorldParts& parts, const Settings& settings)
-      : btDiscreteDynamicsWorld(&parts.dispatcher, &parts.broadphase, &parts.solver, &parts.configuration),
+      : World(&parts.dispatcher, &parts.broadphase, &parts.solver, &parts.configuration),
         first_contacts_(parts.first_contacts),
         contact_impulses_(parts.contact_impulses),
         contacts_(settings.step_s, settings.continuous, settings.threads, islands_, first_contacts_),
@@ -53,6 +53,8 @@ class SoftWorld final : public btDiscreteDynamicsWorld {
     rest(step_s);
     return 1;
   }
+
+  void forget_past() override { islands_.forget_past(); }
 
   void addRigidBody(btRigidBody* body) override {
     islands_.insert(*body);
@@ -130,7 +132,7 @@ class SoftWorld final : public btDiscreteDynamicsWorld {
 
 }  // namespace
 
-std::unique_ptr<btDiscreteDynamicsWorld> make_soft_world(const WorldParts& parts, const Settings& settings) {
+std::unique_ptr<World> make_soft_world(const WorldParts& parts, const Settings& settings) {
   return std::make_unique<SoftWorld>(parts, settings);
 }
 

@@ -6,6 +6,6 @@
 
 namespace aurasim::physics {
 
-std::unique_ptr<btDiscreteDynamicsWorld> make_soft_world(const WorldParts& parts, const Settings& settings);
+std::unique_ptr<World> make_soft_world(const WorldParts& parts, const Settings& settings);
 
 }  // namespace aurasim::physics
