@@ -115,8 +115,9 @@ void take_cut(benchmark::State& state) {
 }
 
 /// A world goes back by `states` states. CPU time.
+template <class World>
 void go_back(benchmark::State& state) {
-  RainRun run(static_cast<std::size_t>(state.range(0)));
+  World run(static_cast<std::size_t>(state.range(0)));
   const ClusterState cut = run.world.peek_all();
   const Step then = run.world.step_number();
   for (auto _ : state) {
@@ -129,9 +130,15 @@ void go_back(benchmark::State& state) {
 }
 
 BENCHMARK(take_cut)->Arg(5000)->Unit(benchmark::kMillisecond);
-BENCHMARK(go_back)
+BENCHMARK(go_back<RainRun>)
     ->ArgNames({"bodies", "states"})
     ->ArgsProduct({{5000}, {5, 20}})
+    ->UseManualTime()
+    ->Iterations(10)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(go_back<Run>)
+    ->ArgNames({"bodies", "states"})
+    ->ArgsProduct({{5000}, {20}})
     ->UseManualTime()
     ->Iterations(10)
     ->Unit(benchmark::kMillisecond);
