@@ -9,21 +9,31 @@
 #include "host/terminal.h"
 
 namespace aurasim::launch {
+namespace {
+
+/// What redos took; empty if there were none.
+std::string cost_of_redos(const records::Accounts& accounts) {
+  if (accounts.redos == 0) return {};
+  return fmt::format("; {} redos took {:.1f} % of the computing time", accounts.redos, 100 * accounts.redo_share);
+}
+
+}  // namespace
 
 std::string closing_line(const records::Accounts& accounts) {
   if (accounts.incomplete.empty()) {
-    return fmt::format("{} bodies alive, {} lost, {} duplicated; {} hand-offs, {} thrashed; real-time factor {:.3f}\n",
-                       accounts.bodies, accounts.lost, accounts.duplicated, accounts.hand_offs, accounts.thrashed,
-                       accounts.real_time_factor);
+    return fmt::format(
+        "{} bodies alive, {} lost, {} duplicated; {} hand-offs, {} thrashed; real-time factor {:.3f}{}\n",
+        accounts.bodies, accounts.lost, accounts.duplicated, accounts.hand_offs, accounts.thrashed,
+        accounts.real_time_factor, cost_of_redos(accounts));
   }
   std::vector<std::uint32_t> regions;
   for (const records::IncompleteRegion& region : accounts.incomplete) regions.push_back(core::value_of(region.region));
   return fmt::format(
       "{} bodies alive for sure, {} duplicated; not known of {} bodies: alive or lost, since the records of regions "
       "[{}] "
-      "end before the run; at least {} hand-offs, {} thrashed; real-time factor {:.3f}\n",
+      "end before the run; at least {} hand-offs, {} thrashed; real-time factor {:.3f}{}\n",
       accounts.bodies, accounts.duplicated, accounts.unaccounted, fmt::join(regions, ", "), accounts.hand_offs,
-      accounts.thrashed, accounts.real_time_factor);
+      accounts.thrashed, accounts.real_time_factor, cost_of_redos(accounts));
 }
 
 command_line::ExitCode merge_and_print(const std::filesystem::path& folder, const records::RunFacts& facts,

@@ -102,11 +102,23 @@ const StepReport& Node::settle() {
 
 const StepReport& Node::step() {
   held_.begin_step();
-  if (redo_is_due()) {
-    put_back();
-    hold();
-    return report_;
+  const bool goes_back = redo_is_due();
+  double took_s = mail_s_;
+  {
+    const Timed timed(took_s, setup_.clock);
+    if (goes_back) {
+      put_back();
+    } else {
+      compute_and_keep();
+    }
   }
+  time_spent_.add(current_step(), took_s, goes_back);
+  hold();
+  return report_;
+}
+
+/// Computes the next state, and keeps what a redo or somebody else may want of it.
+void Node::compute_and_keep() {
   // Before the clusters for the next state are taken in, because some of them left before a saved state.
   const core::Step next = current_step() + 1;
   saved_.note_whole([this, next](core::Step state) {
@@ -119,8 +131,6 @@ const StepReport& Node::step() {
   forget_setpoints();
   order_redo();
   order_recorded_moves();
-  hold();
-  return report_;
 }
 
 void Node::compute_step() {

@@ -22,6 +22,7 @@
 #include "node/phase_clock.h"
 #include "node/static_orders.h"
 #include "node/step_report.h"
+#include "node/time_spent.h"
 #include "node/touches.h"
 #include "physics/region_world.h"
 #include "transport/transport.h"
@@ -87,6 +88,8 @@ class Node {
   void give_up_redo() { protocol_->give_up_alarms(); }
   /// How many redos the run has had.
   std::uint32_t redos() const { return setup_.protocol.redo; }
+  /// Computing time since this node began, and how much of it went into redos.
+  const TimeSpent& time_spent() const { return time_spent_; }
 
   /// Asks for this region's part of the world in state `step`. A state that has been computed already is ignored.
   void save(core::Step step) {
@@ -163,6 +166,7 @@ class Node {
   std::vector<core::RegionId> hosts_at_start(core::Snapshot all);
 
   // A step (node.cpp)
+  void compute_and_keep();
   void take_mail();
   void compute_step();
   void apply(const core::Changes& changes);
@@ -250,6 +254,7 @@ class Node {
   LateWords late_words_;
   core::Epoch first_epoch_ = 0;  ///< epoch that new bodies get
   double mail_s_ = 0;            ///< time spent with the mail since the last step
+  TimeSpent time_spent_;
   StepReport report_;
 };
 

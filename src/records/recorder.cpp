@@ -227,6 +227,8 @@ void Recorder::write_summary(node::Node& node, const Ending& ending) const {
       {"checkpoint_bytes", ending.checkpoint_bytes},
       {"checkpoints_left_out", ending.checkpoints_left_out},
   };
+  summary["computing_s"] = node.time_spent().all_s();
+  summary["in_redos_s"] = node.time_spent().in_redos_s();
   constexpr std::size_t kMostPairs = 16;
   summary["redos"] = nlohmann::json::array();
   for (const Redo& redo : redos_) {

@@ -255,6 +255,9 @@ class Merge {
       accounts_.dead.push_back({region, bodies.size()});
       dead.push_back({{"region", core::value_of(region)}, {"bodies", bodies}});
     }
+    const Json all_redos = redos();
+    accounts_.redos = all_redos.size();
+    accounts_.redo_share = redo_share();
     const Json summary = {
         {"steps", steps},
         {"step_s", facts_.step_s},
@@ -276,7 +279,8 @@ class Merge {
         {"missed_collisions", sum_over_nodes("missed_collisions")},
         {"late_without_violation", sum_over_nodes("late_without_violation")},
         {"severed_contacts", sum_over_nodes("severed_contacts")},
-        {"redos", redos()},
+        {"redos", all_redos},
+        {"redo_share", accounts_.redo_share},
         {"violations", violations},
         {"violations_by_kind", by_kind},
         {"regions", frame_times()},
@@ -295,6 +299,16 @@ class Merge {
       if (node.contains("redos") && node["redos"].size() > most.size()) most = node["redos"];
     }
     return most;
+  }
+
+  /// The share of all nodes' computing time that went into going back and into states computed again.
+  double redo_share() const {
+    double all_s = 0, in_redos_s = 0;
+    for (const Json& node : nodes_) {
+      all_s += node.value("computing_s", 0.0);
+      in_redos_s += node.value("in_redos_s", 0.0);
+    }
+    return all_s > 0 ? in_redos_s / all_s : 0;
   }
 
   Json incomplete_json() const {

@@ -38,6 +38,8 @@ struct Accounts {
   std::uint64_t hand_offs = 0;
   std::uint64_t thrashed = 0;
   double real_time_factor = 0;
+  std::size_t redos = 0;
+  double redo_share = 0;  ///< share of the nodes' computing time that went into redos
   std::vector<DeadRegion> dead;
   std::vector<IncompleteRegion> incomplete;
   std::vector<std::string> not_merged;  ///< merged files that did not fit on the disk

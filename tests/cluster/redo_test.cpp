@@ -61,7 +61,11 @@ TEST(Check, FindsWhatAurasWouldHaveTold) {
   ClusterOptions options = options_for(1);
   options.aura.kind = AuraKind::kNone;
   const core::Scene scene = scene_for(1);
-  EXPECT_GT(CheckedRun(scene, options).run(kRedoSteps).redos, 0u);
+  CheckedRun run(scene, options);
+  EXPECT_GT(run.run(kRedoSteps).redos, 0u);
+  const node::TimeSpent& spent = run.node(0).time_spent();
+  EXPECT_GT(spent.in_redos_s(), 0);
+  EXPECT_LT(spent.in_redos_s(), spent.all_s());
 }
 
 TEST(Check, WithoutItsMarginMissesATouch) {

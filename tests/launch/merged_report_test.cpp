@@ -17,6 +17,14 @@ TEST(ClosingLineOfAReport, CountsBodies) {
   EXPECT_THAT(closing_line(accounts), StartsWith("448 bodies alive, 0 lost, 0 duplicated; 0 hand-offs"));
 }
 
+TEST(ClosingLineOfAReport, SaysWhatRedosTookWhereThereWereAny) {
+  records::Accounts accounts;
+  EXPECT_THAT(closing_line(accounts), Not(HasSubstr("redos")));
+  accounts.redos = 3;
+  accounts.redo_share = 0.1234;
+  EXPECT_THAT(closing_line(accounts), HasSubstr("; 3 redos took 12.3 % of the computing time\n"));
+}
+
 /// A disk was full: nobody has written down who is there.
 TEST(ClosingLineOfAReport, SaysWhatIsNotKnown) {
   records::Accounts accounts;

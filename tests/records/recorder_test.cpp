@@ -85,6 +85,8 @@ TEST_F(Records, HaveOneRowPerStepAndALastWord) {
   ASSERT_EQ(steps.size(), 101U);
   for (std::size_t i = 0; i < steps.size(); ++i) EXPECT_EQ(steps[i], i);
   EXPECT_EQ(last_word().at("outcome"), "finished");
+  EXPECT_EQ(last_word().at("computing_s"), node_.time_spent().all_s());
+  EXPECT_EQ(last_word().at("in_redos_s"), 0);
   EXPECT_FALSE(recorder.records_end());
 }
 

@@ -87,6 +87,17 @@ TEST_F(Merged, CountsEveryBodyOnceWhereverItIs) {
   EXPECT_EQ(accounts.duplicated, 0U);
 }
 
+TEST_F(Merged, SaysWhatShareOfTheTimeWentIntoRedos) {
+  EXPECT_EQ(merge().redo_share, 0);
+  const Json redo = {{"from_step", 9}, {"to_step", 5}, {"pairs", Json::array()}};
+  last_word(0, {{"outcome", "finished"}, {"computing_s", 6.0}, {"in_redos_s", 1.0}, {"redos", Json::array({redo})}});
+  last_word(1, {{"outcome", "finished"}, {"computing_s", 2.0}, {"in_redos_s", 0.5}, {"redos", Json::array({redo})}});
+  const Accounts accounts = merge();
+  EXPECT_EQ(accounts.redos, 1U);
+  EXPECT_DOUBLE_EQ(accounts.redo_share, 1.5 / 8);
+  EXPECT_DOUBLE_EQ(summary_["redo_share"].get<double>(), 1.5 / 8);
+}
+
 TEST_F(Merged, NamesWhoIsNowhere) {
   born(0, 1);
   born(1, 2);
