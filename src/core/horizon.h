@@ -49,8 +49,9 @@ inline constexpr Step kBetweenCuts = 5;
 /// Number of states between the older cuts, which are kept for pairs that a redo has not brought together.
 inline constexpr Step kBetweenOlderCuts = 6 * kBetweenCuts;
 /// A redo goes back to a cut at least so many states before the touch that it has to prevent. The pair comes to one
-/// host through at most kMostHops pulls, and each is decided one state after its cause is known.
-constexpr Step before_touch(int lookahead) { return 2 + kMostHops * (lookahead + 1); }
+/// host through one pull, which is decided one state after its cause is known. Where it takes more pulls, the next redo
+/// goes back to an older cut.
+constexpr Step before_touch(int lookahead) { return 2 + (lookahead + 1); }
 /// A redo keeps a pair on one host for so many states after its touch. After that, contacts and auras keep it together.
 constexpr Step together_after_touch(int lookahead) { return 2 * lookahead + 2; }
 

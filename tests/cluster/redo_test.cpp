@@ -4,6 +4,7 @@
 
 #include "cluster/checked_run.h"
 #include "cluster/scenes.h"
+#include "core/horizon.h"
 
 namespace aurasim::test {
 namespace {
@@ -66,6 +67,37 @@ TEST(Check, FindsWhatAurasWouldHaveTold) {
   const node::TimeSpent& spent = run.node(0).time_spent();
   EXPECT_GT(spent.in_redos_s(), 0);
   EXPECT_LT(spent.in_redos_s(), spent.all_s());
+}
+
+/// Two balls that meet head-on over the border in state `touch`, or soon after it.
+core::Scene two_balls(core::Step touch) {
+  core::Scene scene;
+  scene.gravity = core::Vec3::Zero();
+  scene.shapes = {{"ball", core::Sphere{0.5}}};
+  scene.materials = {core::Material{}};
+  scene.prototypes = {{"ball", 0, 0, 1, true}};
+  constexpr double kSpeed_m_s = 6;
+  for (int side : {-1, 1}) {
+    core::InitialBody& ball = scene.bodies.emplace_back();
+    ball.id = core::BodyId{scene.bodies.size() - 1};
+    ball.pose.p_WB = {side * (0.5 + kSpeed_m_s * static_cast<double>(touch) / 60), 0, 2};
+    ball.v_WB = {-side * kSpeed_m_s, 0, 0};
+  }
+  return scene;
+}
+
+TEST(WayBack, IsFarEnoughToBringTwoBodiesTogetherAtTheFirstTry) {
+  for (int lookahead = 1; lookahead <= 4; ++lookahead) {
+    for (core::Step touch = 60; touch < 60 + core::horizon::kBetweenCuts; ++touch) {
+      ClusterOptions options = options_for(2);
+      options.aura.lookahead = lookahead;
+      options.aura.kind = AuraKind::kNone;
+      const core::Scene scene = two_balls(touch);
+      const Outcome apart = CheckedRun(scene, options).run(kRedoSteps);
+      EXPECT_EQ(apart.redos, 1u) << "K = " << lookahead << ", touch in " << touch;
+      EXPECT_EQ(first_difference(apart, run_central(scene, options, kRedoSteps)), kRedoSteps + 1);
+    }
+  }
 }
 
 TEST(Check, WithoutItsMarginMissesATouch) {
