@@ -19,7 +19,8 @@ using core::ClusterState;
 using core::Step;
 using core::Vec3;
 
-constexpr int kSeeds = 3;
+/// Number of worlds with the soft step and with Bullet's solver, which takes four times as long.
+constexpr int kSoftSeeds = 3, kOtherSeeds = 2;
 constexpr int kRounds = 5;  ///< times that each world goes back
 constexpr int kCompared = 200;
 
@@ -254,7 +255,8 @@ class PutBack : public ::testing::TestWithParam<std::tuple<Solver, bool>> {
 };
 
 TEST_P(PutBack, GoesOnWithTheBitsOfAWorldMadeAnew) {
-  for (int seed = 0; seed < kSeeds; ++seed) {
+  const int seeds = settings().looks_once() ? kSoftSeeds : kOtherSeeds;
+  for (int seed = 0; seed < seeds; ++seed) {
     GoesBack run(settings(), seed);
     for (int round = 0; round < kRounds; ++round) {
       run.run_on(5 + static_cast<int>(run.pick(60)));
