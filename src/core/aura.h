@@ -86,13 +86,13 @@ class Aura {
   /// return the promised V.
   virtual double speed_of(const BodyState& body) const = 0;
 
-  /// Do a foreign body and one of ours have to share a host? Looks h K - `fewer_steps` steps ahead from now. `hops` (h)
-  /// is the number of regions through which a pull can chain (1 away from corners).
-  virtual bool meets(const Path& foreign, const Path& own, int hops, int fewer_steps = 0) const = 0;
+  /// Do a foreign body and one of ours have to share a host? Looks h K steps ahead from now. `hops` (h) is the
+  /// number of regions through which a pull can chain (1 away from corners).
+  virtual bool meets(const Path& foreign, const Path& own, int hops) const = 0;
   /// Do two bodies of one host have to move together (belong to one cluster)?
   virtual bool linked(const Path& a, const Path& b, int hops) const = 0;
   /// Like meets(), for a ghost (a body that was just handed over) and one of ours.
-  virtual bool meets_ghost(const Path& ghost, const Path& own, int hops, int fewer_steps = 0) const = 0;
+  virtual bool meets_ghost(const Path& ghost, const Path& own, int hops) const = 0;
 
   /// A body whose surface is this near to another region's territory projects its aura (metres). `other_speed_m_s`,
   /// `other_radius_m`: the largest of the other region's bodies.
@@ -107,7 +107,7 @@ class Aura {
   /// speeds.
   Range link_range(int hops) const;
   /// Regions at most this far apart have to listen to each other: the widest zone away from corners, for bodies at the
-  /// promised top speed, also while ranks change.
+  /// promised top speed.
   double listening_distance_m(double largest_radius_m) const;
 
   /// How fast a body may leave its present place, along its path and off it, m/s.

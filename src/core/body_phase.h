@@ -20,7 +20,7 @@ enum class PhaseEvent : std::uint8_t {
   kFarFromBoundary,  ///< no region or foreign body within reach
   kNearBoundary,     ///< within reach of another region or of a foreign body, not wholly outside its own
   kOutside,          ///< wholly outside its own region
-  kAuraHit,          ///< AC: its cluster has met an aura of a region that outranks ours
+  kAuraHit,          ///< AC: its cluster has met an aura of a lower region
   kIsland,           ///< BT: its cluster has been an island for long enough
 };
 inline constexpr int kPhaseEvents = 5;

@@ -22,9 +22,8 @@ int hops_of(std::uint64_t regions, const AuraRules& rules) {
 }  // namespace
 
 void Clusters::begin(std::span<const Path> paths, std::span<const std::uint64_t> regions,
-                     std::span<const Contact> contacts, std::span<const Contact> joints, int hops_each) {
+                     std::span<const Contact> contacts, std::span<const Contact> joints) {
   paths_ = paths;
-  hops_each_ = hops_each;
   const auto n = paths.size();
   label_.resize(n);
   next_.resize(n);
@@ -32,11 +31,11 @@ void Clusters::begin(std::span<const Path> paths, std::span<const std::uint64_t>
   std::iota(next_.begin(), next_.end(), 0u);
   size_.assign(n, 1);
   regions_.resize(n);
-  hops_.assign(n, hops_each);
-  most_hops_ = hops_each;
+  hops_.assign(n, 1);
+  most_hops_ = 1;
   for (std::uint32_t i = 0; i < n; ++i) set_regions(i, regions[i]);
   link_ranges_.clear();
-  for (int hops = 0; hops <= horizon::kMostHops * hops_each; ++hops) link_ranges_.push_back(aura_.link_range(hops));
+  for (int hops = 0; hops <= horizon::kMostHops; ++hops) link_ranges_.push_back(aura_.link_range(hops));
   complete_.assign(n, 0);
   links_.clear();
   grown_.clear();
@@ -49,7 +48,7 @@ void Clusters::begin(std::span<const Path> paths, std::span<const std::uint64_t>
 
 void Clusters::set_regions(std::uint32_t cluster, std::uint64_t regions) {
   regions_[cluster] = regions;
-  const int hops = hops_each_ * hops_of(regions, aura_.rules());
+  const int hops = hops_of(regions, aura_.rules());
   hops_[cluster] = hops;
   most_hops_ = std::max(most_hops_, hops);
 }
@@ -64,7 +63,7 @@ bool Clusters::add_regions(std::uint32_t i, std::uint64_t regions) {
   const std::uint32_t cluster = of(i);
   if ((regions & ~regions_[cluster]) == 0) return false;
   const std::uint64_t all = regions_[cluster] | regions;
-  note_more_hops(i, hops_each_ * hops_of(all, aura_.rules()));
+  note_more_hops(i, hops_of(all, aura_.rules()));
   set_regions(cluster, all);
   complete_[cluster] = 0;
   return true;
@@ -80,8 +79,8 @@ std::uint32_t Clusters::unite(std::uint32_t a, std::uint32_t b) {
   links_.push_back(link);
   if (size_[a] < size_[b]) std::swap(a, b);
   const std::uint64_t all = regions_[a] | regions_[b];
-  note_more_hops(a, hops_each_ * hops_of(all, aura_.rules()));
-  note_more_hops(b, hops_each_ * hops_of(all, aura_.rules()));
+  note_more_hops(a, hops_of(all, aura_.rules()));
+  note_more_hops(b, hops_of(all, aura_.rules()));
   for_each_member(b, [&](std::uint32_t j) { label_[j] = a; });
   size_[a] += size_[b];
   set_regions(a, all);

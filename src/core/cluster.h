@@ -17,10 +17,9 @@ class Clusters {
   explicit Clusters(const Aura& aura) : aura_(aura) {}
 
   /// Starts a step: one cluster per group of bodies connected by `contacts` or `joints`. `regions[i]` has a bit for
-  /// every other region in reach of body i. The caller owns `paths`. `hops_each`: how often a pull may have to come
-  /// through each region (2 while Ranks::changing(), else 1).
+  /// every other region in reach of body i. The caller owns `paths`.
   void begin(std::span<const Path> paths, std::span<const std::uint64_t> regions, std::span<const Contact> contacts,
-             std::span<const Contact> joints, int hops_each = 1);
+             std::span<const Contact> joints);
 
   /// Notes that `regions` (bits) have bodies near body i. Returns false if that was known; otherwise the cluster has to
   /// be completed again.
@@ -71,7 +70,6 @@ class Clusters {
 
   const Aura& aura_;
   std::span<const Path> paths_;
-  int hops_each_ = 1;
   int most_hops_ = 1;
   std::vector<std::uint32_t> grown_;
   std::vector<Range> link_ranges_;  ///< by hops

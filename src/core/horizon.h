@@ -15,10 +15,6 @@ inline constexpr int kMostHops = 3;
 /// A cluster goes home only if nothing is expected to meet it for K steps more than an aura looks ahead. For that long,
 /// the others may act upon auras from before it left. So auras have to be announced K steps earlier, too.
 inline constexpr int kHomewardHops = 1;
-/// While ranks change, a chain of pulls may have to come all the way back: each region counts twice. For meetings one
-/// step less is enough (docs/decisions/0016-ranks.md).
-inline constexpr int kHopsEachWhileRanksChange = 2;
-inline constexpr int kFewerStepsWhileRanksChange = 1;
 
 // Looking ahead.
 
@@ -83,16 +79,5 @@ constexpr Step birth_notice(int lookahead) { return 4 * lookahead + 2; }
 /// Steps between a command to a whole run and the state that it names. By then all nodes have received it, also those
 /// that are K steps ahead.
 constexpr Step command_notice(int lookahead) { return 2 * lookahead + 1; }
-/// Steps between a claim of rank and the state from which on it counts. By then every node has received it, and has
-/// looked further ahead for as long as a pull can take.
-constexpr Step rank_notice(int lookahead) { return 6 * lookahead + 2; }
-/// For so many steps before a claim of rank counts, every node looks further ahead: for three pulls in a row, the
-/// longest chain (docs/decisions/0006-hops.md), and for the auras that have to be announced before them.
-constexpr Step before_ranks_change(int lookahead) { return (kMostHops + 1) * lookahead + 1; }
-/// For so many states after a claim counts, the last bodies that moved by the old ranks may be under way.
-constexpr Step after_ranks_change(int lookahead) { return lookahead - 1; }
-/// Steps between two claims of one node. Every node remembers two claims, and no longer needs the first when the third
-/// is made.
-constexpr Step between_claims(int lookahead) { return rank_notice(lookahead) + 2 * lookahead; }
 
 }  // namespace aurasim::core::horizon

@@ -19,9 +19,8 @@ bool is_within(const Path& body, const Vec3& p, double radius_m, double distance
 }
 
 /// True if an own cluster that so far would go to `other` goes to `host` instead. False if `host` is not among `live`.
-bool pulls_from(RegionId host, RegionId other, std::span<const RegionId> live, const Ranks& ranks) {
-  return host != other && std::binary_search(live.begin(), live.end(), host) && ranks.pulls(host) &&
-         ranks.outranks(host, other);
+bool pulls_from(RegionId host, RegionId other, std::span<const RegionId> live) {
+  return host < other && std::binary_search(live.begin(), live.end(), host);
 }
 
 }  // namespace
@@ -30,18 +29,16 @@ InterestMatching::InterestMatching(const Aura& aura, const Vicinity& vicinity, s
     : aura_(aura), vicinity_(vicinity), together_(together), clusters_(aura) {}
 
 void InterestMatching::look(const Snapshot& snapshot, std::span<const Neighbour> neighbours,
-                            std::span<const AuraRecord> ghosts, const Ranks& ranks) {
-  const int hops_each = ranks.changing() ? horizon::kHopsEachWhileRanksChange : 1;
-  fewer_steps_ = ranks.changing() ? horizon::kFewerStepsWhileRanksChange : 0;
+                            std::span<const AuraRecord> ghosts) {
   measure(snapshot);
   gather_foreign(snapshot, neighbours, ghosts);
-  mark_regions(hops_each);
+  mark_regions();
   bring_together(snapshot);
-  clusters_.begin(paths_, regions_, snapshot.contacts, joined_, hops_each);
+  clusters_.begin(paths_, regions_, snapshot.contacts, joined_);
   complete_near_boundaries();
   pair_up();
   widest_band_m_ = band(top_speed(), clusters_.most_hops() + kHomewardHops);
-  judge(ranks);
+  judge();
 }
 
 void InterestMatching::measure(const Snapshot& snapshot) {
@@ -84,7 +81,7 @@ double InterestMatching::band(double speed_m_s, int hops) const {
 }
 
 /// Marks the regions in reach of each body. With several of them pulls can chain, so the reach grows with their number.
-void InterestMatching::mark_regions(int hops_each) {
+void InterestMatching::mark_regions() {
   const auto n = paths_.size();
   regions_.assign(n, 0);
   near_.clear();
@@ -93,8 +90,8 @@ void InterestMatching::mark_regions(int hops_each) {
     top_speed = std::max(top_speed, paths_[i].speed_m_s);
     others_top_radius_ = std::max(others_top_radius_, paths_[i].radius_m);
   }
-  const double slow_band = band(NearIndex::kSlow, hops_each + kHomewardHops);
-  const double fast_band = band(top_speed, hops_each + kHomewardHops);
+  const double slow_band = band(NearIndex::kSlow, 1 + kHomewardHops);
+  const double fast_band = band(top_speed, 1 + kHomewardHops);
   for (std::uint32_t i = 0; i < n; ++i) {
     const bool slow = paths_[i].speed_m_s <= NearIndex::kSlow;
     const Vec3& p = paths_[i].pose.p_WB;
@@ -103,8 +100,7 @@ void InterestMatching::mark_regions(int hops_each) {
     int hops = 0;
     for (int found = 1; found > hops; found = std::popcount(regions_[i])) {
       hops = found;
-      regions_[i] =
-          vicinity_.within(p, band(slow ? NearIndex::kSlow : top_speed, hops_each * hops) + paths_[i].radius_m);
+      regions_[i] = vicinity_.within(p, band(slow ? NearIndex::kSlow : top_speed, hops) + paths_[i].radius_m);
     }
   }
 }
@@ -275,37 +271,36 @@ void InterestMatching::find_pairs(const ForeignBlock& block) {
   }
 }
 
-void InterestMatching::judge(const Ranks& ranks) {
+void InterestMatching::judge() {
   touched_.assign(paths_.size(), 0);
   expected_.assign(paths_.size(), 0);
   pulled_to_.assign(paths_.size(), vicinity_.self);
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     Progress::mark_now_and_then(i);
-    judge(pairs_[i], ranks);
+    judge(pairs_[i]);
   }
-  for (const Pair& pair : together_pairs_) judge_touched(pair, ranks);
+  for (const Pair& pair : together_pairs_) judge_touched(pair);
 }
 
 /// Notes that an aura met the cluster of pair.own. The foreign body's host keeps that body, or our cluster goes to it.
-void InterestMatching::judge_touched(const Pair& pair, const Ranks& ranks) {
+void InterestMatching::judge_touched(const Pair& pair) {
   const RegionId host = foreign_[pair.foreign].host;
   const std::uint32_t cluster = clusters_.of(pair.own);
   touched_[cluster] = 1;
-  if (pulls_from(host, pulled_to_[cluster], live_, ranks)) pulled_to_[cluster] = host;
+  if (pulls_from(host, pulled_to_[cluster], live_)) pulled_to_[cluster] = host;
 }
 
-bool InterestMatching::meets(const Foreign& foreign, const Path& own, int hops, int fewer_steps) const {
-  return foreign.ghost ? aura_.meets_ghost(foreign.path, own, hops, fewer_steps)
-                       : aura_.meets(foreign.path, own, hops, fewer_steps);
+bool InterestMatching::meets(const Foreign& foreign, const Path& own, int hops) const {
+  return foreign.ghost ? aura_.meets_ghost(foreign.path, own, hops) : aura_.meets(foreign.path, own, hops);
 }
 
-void InterestMatching::judge(const Pair& pair, const Ranks& ranks) {
+void InterestMatching::judge(const Pair& pair) {
   const Foreign& f = foreign_[pair.foreign];
   const Path& own = paths_[pair.own];
   const std::uint32_t cluster = clusters_.of(pair.own);
   const int hops = clusters_.hops(pair.own);
-  const bool pulls = pulls_from(f.host, pulled_to_[cluster], live_, ranks);
-  if ((!touched_[cluster] || pulls) && meets(f, own, hops, fewer_steps_)) {
+  const bool pulls = pulls_from(f.host, pulled_to_[cluster], live_);
+  if ((!touched_[cluster] || pulls) && meets(f, own, hops)) {
     touched_[cluster] = 1;
     if (pulls) pulled_to_[cluster] = f.host;
   }

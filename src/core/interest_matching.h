@@ -12,7 +12,6 @@
 #include "core/foreign.h"
 #include "core/messages.h"
 #include "core/neighbour.h"
-#include "core/ranks.h"
 #include "core/redo.h"
 #include "core/vicinity.h"
 
@@ -31,8 +30,7 @@ class InterestMatching {
   InterestMatching(const Aura& aura, const Vicinity& vicinity, std::span<const TogetherPair> together = {});
 
   /// Looks at a state, given what the neighbours have published and our own ghosts (bodies just sent away).
-  void look(const Snapshot& snapshot, std::span<const Neighbour> neighbours, std::span<const AuraRecord> ghosts,
-            const Ranks& ranks);
+  void look(const Snapshot& snapshot, std::span<const Neighbour> neighbours, std::span<const AuraRecord> ghosts);
 
   const Clusters& clusters() const { return clusters_; }
   const Path& path(std::uint32_t i) const { return paths_[i]; }
@@ -47,7 +45,7 @@ class InterestMatching {
   /// A foreign aura may meet the cluster so soon that another node could already be sending bodies here because of it.
   /// A cluster that goes home then would pass them on the way. Only known for bodies outside our region.
   bool expected(std::uint32_t i) const { return expected_[clusters_.of(i)] != 0; }
-  /// The highest-ranked host among the auras that met the cluster and outrank us; our own region if there is none.
+  /// The lowest host among the auras that met the cluster, if it is lower than ours; otherwise our own region.
   RegionId pulled_to(std::uint32_t i) const { return pulled_to_[clusters_.of(i)]; }
 
   /// A foreign aura is near body i.
@@ -74,7 +72,7 @@ class InterestMatching {
   void measure(const Snapshot& snapshot);
   void gather_foreign(const Snapshot& snapshot, std::span<const Neighbour> neighbours,
                       std::span<const AuraRecord> ghosts);
-  void mark_regions(int hops_each);
+  void mark_regions();
   void complete_near_boundaries();
   void pair_up();
   void notice(const ForeignBlock& block);
@@ -90,12 +88,12 @@ class InterestMatching {
   double widest_range(double speed_m_s) const;
   template <class Visit>
   void for_each_foreign_near(std::uint32_t own, Visit&& visit) const;
-  void judge(const Ranks& ranks);
-  void judge(const Pair& pair, const Ranks& ranks);
-  void judge_touched(const Pair& pair, const Ranks& ranks);
+  void judge();
+  void judge(const Pair& pair);
+  void judge_touched(const Pair& pair);
   void bring_together(const Snapshot& snapshot);
   std::optional<std::uint32_t> own_index(BodyId id) const;
-  bool meets(const Foreign& foreign, const Path& own, int hops, int fewer_steps = 0) const;
+  bool meets(const Foreign& foreign, const Path& own, int hops) const;
   double band(double speed_m_s, int hops) const;
 
   const Aura& aura_;
@@ -126,7 +124,6 @@ class InterestMatching {
   std::vector<std::uint8_t> touched_;      ///< by cluster
   std::vector<std::uint8_t> expected_;     ///< by cluster
   std::vector<RegionId> pulled_to_;        ///< by cluster
-  int fewer_steps_ = 0;                    ///< meetings are looked for h K minus so many steps ahead
   double widest_band_m_ = 0;               ///< beyond it, no body is near another region
   double others_top_speed_ = 0;
   double others_top_radius_ = 0;

@@ -10,7 +10,6 @@
 #include "core/ids.h"
 #include "core/introduction.h"
 #include "core/order.h"
-#include "core/ranks.h"
 #include "core/redo.h"
 
 namespace aurasim::core {
@@ -59,7 +58,6 @@ struct AuraBatch {
   /// ViolationLog::warnings() of the source: grows with every broken promise, and in every step in which one stays
   /// broken.
   std::uint64_t violations = 0;
-  RankClaims ranks;  ///< rank claims of the source
   std::vector<AuraRecord> updates;
   std::vector<BodyId> deletes;
   std::vector<HandOffMark> hand_offs;

@@ -55,7 +55,6 @@ void Neighbour::note_marks(const AuraBatch& batch) {
   for (const HandOffMark& mark : batch.hand_offs) {
     if (mark.destination == self_) marks_.push_back({batch.stamp, mark.last_sequence});
   }
-  ranks_ = batch.ranks;  // claims of rank count on arrival
 }
 
 void Neighbour::apply(AuraBatch& batch) {

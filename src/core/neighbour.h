@@ -61,8 +61,6 @@ class Neighbour {
   double top_speed_m_s() const { return top_speed_m_s_; }
   double top_radius_m() const { return top_radius_m_; }
   std::uint64_t violations() const { return violations_; }
-  /// Rank claims of the newest batch received, in effect or not: claims count long after they are made.
-  const RankClaims& ranks() const { return ranks_; }
   /// Orders in the batches that took effect since the last call.
   std::vector<Order> take_orders();
   std::vector<Alarm> take_alarms();
@@ -93,7 +91,6 @@ class Neighbour {
   double top_speed_m_s_ = 0;
   double top_radius_m_ = 0;
   std::uint64_t violations_ = 0;
-  RankClaims ranks_;
   std::vector<Order> orders_;
   std::vector<Alarm> alarms_;
   std::vector<Introduced> introductions_;

@@ -13,9 +13,9 @@ class NoneAura final : public Aura {
 
   bool warns() const override { return false; }
   double speed_of(const BodyState&) const override { return rules().top_speed_m_s; }
-  bool meets(const Path&, const Path&, int, int) const override { return false; }
+  bool meets(const Path&, const Path&, int) const override { return false; }
   bool linked(const Path&, const Path&, int) const override { return false; }
-  bool meets_ghost(const Path&, const Path&, int, int) const override { return false; }
+  bool meets_ghost(const Path&, const Path&, int) const override { return false; }
 
  private:
   Steps steps(Question, int) const override { return {}; }
@@ -31,9 +31,9 @@ class BlindAura final : public Aura {
   BlindAura(const AuraRules& rules, const ClearanceQuery& clearance) : Aura(rules, clearance) {}
 
   double speed_of(const BodyState& body) const override { return body.v_WB.norm() + body.coming_kick_m_s; }
-  bool meets(const Path& foreign, const Path& own, int, int) const override { return touch(foreign, own); }
+  bool meets(const Path& foreign, const Path& own, int) const override { return touch(foreign, own); }
   bool linked(const Path& a, const Path& b, int) const override { return touch(a, b); }
-  bool meets_ghost(const Path& ghost, const Path& own, int, int) const override { return touch(ghost, own); }
+  bool meets_ghost(const Path& ghost, const Path& own, int) const override { return touch(ghost, own); }
 
  private:
   bool touch(const Path& a, const Path& b) const {

@@ -30,8 +30,6 @@ Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const
       matching_(*aura_, vicinity_, settings_.together),
       projection_(*aura_, vicinity_),
       orders_(settings.last_order),
-      claimer_(settings.self, settings.aura.lookahead, settings.shuffle_ranks_steps),
-      ranks_(settings.aura.lookahead),
       hops_across_(hops_across(map, settings.neighbour_distance_m)),
       listening_(vicinity_, intake_, settings.aura.lookahead, settings.start, settings.related),
       introducer_(*aura_, vicinity_),
@@ -44,7 +42,6 @@ Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const
   alarms_given_up_ = !continuation.dead.empty();
   orders_ = std::move(continuation.orders);
   alarms_ = std::move(continuation.alarms);
-  claimer_ = continuation.claimer;
   violations_ = std::move(continuation.violations);
   counters_ = continuation.counters;
   Inbox news;
@@ -52,9 +49,9 @@ Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const
   intake_.accept(news);
 }
 
-Continuation Protocol::continuation(const Order& redo, const RankClaimer& claimer) const {
+Continuation Protocol::continuation(const Order& redo) const {
   const Step now = outbox_.aura.stamp;
-  Continuation next{orders_, alarms_, claimer, violations_, counters_, intake_.dead_regions(), listening_.agreed(now)};
+  Continuation next{orders_, alarms_, violations_, counters_, intake_.dead_regions(), listening_.agreed(now)};
   next.orders.put_back(redo.sequence);
   next.alarms.put_back(std::get<Redo>(redo.action).cut);
   return next;
@@ -152,26 +149,17 @@ const std::vector<Departure>& Protocol::observe(const Snapshot& snapshot) {
   outbox_.aura.stamp = snapshot.step;
   projection_.follow(snapshot);
   full_ = listening_.begin(snapshot.step) || snapshot.step == settings_.start;
-  rank(snapshot.step);
   Progress::mark();
-  matching_.look(snapshot, intake_.neighbours(), projection_.ghosts(), ranks_);
+  matching_.look(snapshot, intake_.neighbours(), projection_.ghosts());
   Progress::mark();
   check(snapshot);
   projection_.classify(snapshot, matching_);
   note_who_waits(snapshot);
   decide(snapshot);
-  claimer_.reconsider(snapshot.step, {largest_cluster_, largest_guest_}, ranks_);
   projection_.publish(snapshot, outbox_.aura, violations_, full_);
   last_violation_step_ = std::max(last_violation_step_, violations_.last_step());
   fill_header();
   return departing_;
-}
-
-void Protocol::rank(Step now) {
-  ranks_.begin(now, vicinity_.self, claimer_.claims());
-  for (const Neighbour& neighbour : intake_.neighbours()) {
-    if (neighbour.alive()) ranks_.add(neighbour.id(), neighbour.ranks());
-  }
 }
 
 void Protocol::sign(AuraBatch& batch) const {
@@ -188,7 +176,6 @@ void Protocol::fill_header() {
   batch.top_speed_m_s = matching_.top_speed();
   batch.top_radius_m = matching_.top_radius();
   batch.violations = violations_.warnings();
-  batch.ranks = claimer_.claims();
   std::sort(batch.updates.begin(), batch.updates.end(),
             [](const AuraRecord& a, const AuraRecord& b) { return a.id < b.id; });
   departures_.due_again(batch.stamp, settings_.resend_after_steps, outbox_.hand_offs);

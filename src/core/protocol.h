@@ -20,7 +20,6 @@
 #include "core/messages.h"
 #include "core/order_log.h"
 #include "core/projection.h"
-#include "core/ranks.h"
 #include "core/redo.h"
 #include "core/region_map.h"
 #include "core/standing.h"
@@ -40,7 +39,6 @@ struct ProtocolSettings {
   Step start = 0;                      ///< the first state that is passed to observe()
   std::uint64_t last_order = 0;        ///< orders up to this sequence have been received
   Step resend_after_steps = 120;       ///< an unacknowledged hand-off is sent again every so often
-  Step shuffle_ranks_steps = 0;        ///< tests only: another rank every so many steps
   std::vector<TogetherPair> together;  ///< a < b, ascending
   std::vector<Listened> related;       ///< regions, besides those near us, that listen from the start
 };
@@ -70,7 +68,6 @@ struct ProtocolCounters {
 struct Continuation {
   OrderLog orders;
   AlarmLog alarms;
-  RankClaimer claimer;  ///< the state that it had in the cut
   ViolationLog violations;
   ProtocolCounters counters;
   std::vector<RegionId> dead;
@@ -159,9 +156,8 @@ class Protocol {
   void doubt(Step step) { alarms_.raise(step, kNobody, kNobodyElse); }
   /// Number of states that a message needs at most to reach every node.
   Step round() const { return hops_across_ * aura_->rules().lookahead; }
-  const RankClaimer& claimer() const { return claimer_; }
-  /// The state to pass to the next Protocol after the redo of this order. `claimer`: as it was in the cut.
-  Continuation continuation(const Order& redo, const RankClaimer& claimer) const;
+  /// The state to pass to the next Protocol after the redo of this order.
+  Continuation continuation(const Order& redo) const;
 
   /// Hands over the cluster of a departure, as released from physics. Call once for each departure, in order.
   void hand_over(const Departure& departure, ClusterState cluster);
@@ -190,14 +186,12 @@ class Protocol {
   void apply_late(Order& order, Step n);
   void decide(const Snapshot& snapshot);
   void decide_for_cluster(std::uint32_t i, const Snapshot& snapshot);
-  bool is_abroad(std::uint32_t i) const;
   void send_home(const Snapshot& snapshot);
   void decide_naively(std::uint32_t i, const Snapshot& snapshot);
   void note_who_waits(const Snapshot& snapshot);
   bool settles_elsewhere(std::uint32_t i, Step now);
   RegionId lowest_owner(std::uint32_t i) const;
   void depart(std::uint32_t i, RegionId destination, HandOffReason reason, const Snapshot& snapshot);
-  void rank(Step now);
   void fill_header();
   void sign(AuraBatch& batch) const;
   void receive_violations();
@@ -213,8 +207,6 @@ class Protocol {
   InterestMatching matching_;
   Projection projection_;
   OrderLog orders_;
-  RankClaimer claimer_;
-  Ranks ranks_;
   int hops_across_;
   Listening listening_;
   Introducer introducer_;
@@ -245,7 +237,6 @@ class Protocol {
   std::uint64_t violations_received_ = 0;
   Step last_violation_step_ = -1'000'000;
   std::size_t largest_cluster_ = 0;
-  std::size_t largest_guest_ = 0;  ///< RankClaimer::LargeClusters::guests
 };
 
 /// The host of each body in state 0, the same on every node. Each cluster of the whole scene gets the lowest region

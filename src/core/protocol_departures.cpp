@@ -12,7 +12,7 @@ void Protocol::decide(const Snapshot& snapshot) {
   decided_.assign(snapshot.bodies.size(), 0);
   goes_home_.assign(snapshot.bodies.size(), 0);
   homing_.clear();
-  largest_cluster_ = largest_guest_ = 0;
+  largest_cluster_ = 0;
   for (std::uint32_t i = 0; i < snapshot.bodies.size(); ++i) {
     if (!aura_->warns()) {
       decide_naively(i, snapshot);
@@ -22,19 +22,10 @@ void Protocol::decide(const Snapshot& snapshot) {
     if (!matching_.clusters().is_complete(i) || decided_[cluster]) continue;
     decided_[cluster] = 1;
     Progress::mark();
-    const std::size_t size = matching_.clusters().size(i);
-    largest_cluster_ = std::max(largest_cluster_, size);
-    if (size >= RankClaimer::kLeastBodies && size > largest_guest_ && is_abroad(i)) largest_guest_ = size;
+    largest_cluster_ = std::max(largest_cluster_, matching_.clusters().size(i));
     decide_for_cluster(i, snapshot);
   }
   send_home(snapshot);
-}
-
-/// Are two thirds or more of body i's cluster outside our region?
-bool Protocol::is_abroad(std::uint32_t i) const {
-  std::size_t outside = 0;
-  matching_.clusters().for_each_member(i, [&](std::uint32_t j) { outside += matching_.outside(j) ? 1 : 0; });
-  return 3 * outside >= 2 * matching_.clusters().size(i);
 }
 
 /// Decides AC before BT, because a cluster that an aura has met is never an island.

@@ -9,7 +9,7 @@ bool SphereAura::spheres_within(const Path& a, const Path& b, double distance_m)
   return (a.pose.p_WB - b.pose.p_WB).squaredNorm() <= d * d;
 }
 
-bool SphereAura::meets(const Path& foreign, const Path& own, int hops, int) const {
+bool SphereAura::meets(const Path& foreign, const Path& own, int hops) const {
   return spheres_within(foreign, own, reach(hops));
 }
 
@@ -18,9 +18,7 @@ bool SphereAura::linked(const Path& a, const Path& b, int hops) const {
 }
 
 /// A ghost counts like one of our bodies until the first aura of its new host has arrived.
-bool SphereAura::meets_ghost(const Path& ghost, const Path& own, int hops, int) const {
-  return linked(ghost, own, hops);
-}
+bool SphereAura::meets_ghost(const Path& ghost, const Path& own, int hops) const { return linked(ghost, own, hops); }
 
 Aura::Steps SphereAura::steps(Question question, int hops) const {
   switch (question) {

@@ -8,9 +8,9 @@ namespace aurasim::core {
 class SphereAura : public Aura {
  public:
   double speed_of(const BodyState&) const override { return rules().top_speed_m_s; }
-  bool meets(const Path& foreign, const Path& own, int hops, int fewer_steps) const override;
+  bool meets(const Path& foreign, const Path& own, int hops) const override;
   bool linked(const Path& a, const Path& b, int hops) const override;
-  bool meets_ghost(const Path& ghost, const Path& own, int hops, int fewer_steps) const override;
+  bool meets_ghost(const Path& ghost, const Path& own, int hops) const override;
 
   /// The distances of the table in docs/design.md, beyond the bounding spheres and the contact margin, in metres.
   double reach(int hops) const { return way_m(meeting_steps(hops)); }

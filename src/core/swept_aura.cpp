@@ -21,17 +21,15 @@ double SweptAura::speed_of(const BodyState& body) const {
   return kSpeedFloor + body.v_WB.norm() + body.coming_kick_m_s / share;
 }
 
-bool SweptAura::meets(const Path& foreign, const Path& own, int hops, int fewer_steps) const {
-  return paths_meet(foreign, own, horizon::meeting(rules().lookahead, hops) - fewer_steps);
+bool SweptAura::meets(const Path& foreign, const Path& own, int hops) const {
+  return paths_meet(foreign, own, horizon::meeting(rules().lookahead, hops));
 }
 
 bool SweptAura::linked(const Path& a, const Path& b, int hops) const {
   return paths_meet(a, b, horizon::linking(rules().lookahead, hops));
 }
 
-bool SweptAura::meets_ghost(const Path& ghost, const Path& own, int hops, int fewer_steps) const {
-  return meets(ghost, own, hops, fewer_steps);
-}
+bool SweptAura::meets_ghost(const Path& ghost, const Path& own, int hops) const { return meets(ghost, own, hops); }
 
 Aura::Steps SweptAura::steps(Question question, int hops) const {
   const int k = rules().lookahead;

@@ -12,9 +12,9 @@ class SweptAura final : public Aura {
 
   bool predicts() const override { return true; }
   double speed_of(const BodyState& body) const override;
-  bool meets(const Path& foreign, const Path& own, int hops, int fewer_steps) const override;
+  bool meets(const Path& foreign, const Path& own, int hops) const override;
   bool linked(const Path& a, const Path& b, int hops) const override;
-  bool meets_ghost(const Path& ghost, const Path& own, int hops, int fewer_steps) const override;
+  bool meets_ghost(const Path& ghost, const Path& own, int hops) const override;
 
  private:
   Steps steps(Question question, int hops) const override;

@@ -29,7 +29,6 @@ node::NodeSetup node_setup(const ClusterRules& rules) {
   setup.protocol.aura.looks_once = rules.physics.looks_once();
   setup.protocol.aura.sweeps = rules.physics.continuous;
   setup.protocol.neighbour_distance_m = rules.neighbour_distance_m;
-  setup.protocol.shuffle_ranks_steps = rules.shuffle_ranks_steps;
   setup.physics = rules.physics;
   setup.control = rules.control;
   setup.physics.step_s = rules.aura.step_s;

@@ -47,7 +47,6 @@ struct ClusterRules {
   double shortest_frame_s = 0;
   double longest_frame_s = 0;
   std::vector<double> phase_s;            ///< by region: delay of its steps after the shared epoch
-  core::Step shuffle_ranks_steps = 0;     ///< about every so many steps ranks change; 0: as in a real run
   std::vector<core::Setpoints> recorded;  ///< effects of an earlier run, which this one repeats
   std::uint64_t seed = 1;
 };

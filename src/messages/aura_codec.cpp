@@ -30,8 +30,7 @@ MaybeError check_values(const wire::AuraBatch& in, const Expected& expected) {
   if (!std::isfinite(in.top_speed_m_s()) || !std::isfinite(in.top_radius_m())) {
     return WireError::kNotFinite;
   }
-  const bool in_range = in.stamp() >= 0 && in.rank_held_stamp() >= 0 && in.rank_next_stamp() >= in.rank_held_stamp() &&
-                        in.rank_next_stamp() <= in.stamp() && in.top_speed_m_s() >= 0 && in.top_radius_m() >= 0 &&
+  const bool in_range = in.stamp() >= 0 && in.top_speed_m_s() >= 0 && in.top_radius_m() >= 0 &&
                         in.top_speed_m_s() <= bearable::kFastestReach_m_s &&
                         in.top_radius_m() <= bearable::kFarthestReach_m && all_body_ids(in.deleted()) &&
                         all_below(in.hand_off_destination(), expected.region_count);
@@ -71,10 +70,6 @@ void encode(const AuraBatch& batch, wire::AuraBatch& out) {
   out.top_speed_m_s(batch.top_speed_m_s);
   out.top_radius_m(batch.top_radius_m);
   out.violations(batch.violations);
-  out.rank_held_weight(batch.ranks.held.weight);
-  out.rank_held_stamp(batch.ranks.held.stamp);
-  out.rank_next_weight(batch.ranks.next.weight);
-  out.rank_next_stamp(batch.ranks.next.stamp);
   encode_auras(batch, out);
   fill(out.deleted(), batch.deletes, [](BodyId id) { return value_of(id); });
   fill(out.hand_off_destination(), batch.hand_offs, [](const core::HandOffMark& m) { return value_of(m.destination); });
@@ -104,7 +99,6 @@ Decoded<AuraBatch> decode(const wire::AuraBatch& in, const Expected& expected) {
   batch.top_speed_m_s = in.top_speed_m_s();
   batch.top_radius_m = in.top_radius_m();
   batch.violations = in.violations();
-  batch.ranks = {{in.rank_held_weight(), in.rank_held_stamp()}, {in.rank_next_weight(), in.rank_next_stamp()}};
   batch.updates = decode_auras(in);
   fill(batch.deletes, in.deleted(), [](std::uint64_t id) { return static_cast<BodyId>(id); });
   for (std::size_t i = 0; i < in.hand_off_last().size(); ++i) {

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "core/intake.h"
-#include "core/ranks.h"
 #include "core/redo.h"
 #include "node/births.h"
 #include "node/collision_watch.h"
@@ -23,7 +22,6 @@ struct Cut {
   core::ClusterState bodies;            ///< hosted here; those that left in this state are taken out
   std::vector<core::Adoption> joining;  ///< clusters sent here in this state or before that have not joined yet
   ToBeBorn to_be_born;                  ///< also with the spawn orders received after the cut
-  core::RankClaimer claimer;
   CollisionCounts collisions;
 
   /// Adds a cluster that joins this node now, if it had been sent in the cut's state or before.

@@ -54,7 +54,7 @@ void Node::take_cut() {
 /// The cut of the present state. Uses `memory` for its bodies.
 Cut Node::cut(core::ClusterState memory) const {
   world_.copy_all(memory);
-  return {current_step(), std::move(memory), {}, to_be_born_, protocol_->claimer(), watch_.counts()};
+  return {current_step(), std::move(memory), {}, to_be_born_, watch_.counts()};
 }
 
 void Node::keep(core::Step last) {
@@ -111,7 +111,7 @@ void Node::put_back() {
   for (core::Adoption& adoption : cut.joining) raise(adoption.cluster);
 
   note_late_words(cut.step + 1, held_.released());
-  core::Continuation next = protocol_->continuation(order, cut.claimer);
+  core::Continuation next = protocol_->continuation(order);
   setup_.protocol.redo = next.alarms.redo();
   std::vector<core::Listened> related = next.related;
   if (is_the_beginning) related.insert(related.end(), setup_.protocol.related.begin(), setup_.protocol.related.end());

@@ -40,7 +40,7 @@ const StepReport& Node::start(core::WorldCut world, Recorded recorded) {
   execute_saved(beginning_->world);
   world_.moves().give_up_expected(setup_.protocol.start + 1);
   if (is_later) protocol_.emplace(setup_.protocol, *map_, *clearance_);  // else it may have announced orders already
-  const Cut part{setup_.protocol.start, our_part(), {}, to_be_born_, protocol_->claimer(), watch_.counts()};
+  const Cut part{setup_.protocol.start, our_part(), {}, to_be_born_, watch_.counts()};
   protocol_->listen_to(setup_.protocol.related);
   put_in(part);
   for (const core::BodyRecord& body : part.bodies.bodies) {

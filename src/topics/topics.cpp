@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::array<Topic, kTopicCount> kTopics = {{
     {TopicId::kAura, "aura", "aurasim::wire::AuraBatch", Division::kBySource, true, kNodes, kNodes | kViewers,
-     "one per node and step, even if empty: \"state n is done\"; auras, ranks, orders"},
+     "one per node and step, even if empty: \"state n is done\"; auras, orders"},
     {TopicId::kMigration, "migration", "aurasim::wire::Migration", Division::kByPair, true, kNodes, kNodes,
      "one cluster changes host"},
     {TopicId::kMigrationAck, "migration_ack", "aurasim::wire::MigrationAck", Division::kByPair, true, kNodes, kNodes,

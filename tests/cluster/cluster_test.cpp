@@ -132,26 +132,6 @@ TEST_P(ClusterTest, InDeterministicModeEveryStateHasTheBitsOfTheCentralRun) {
   }
 }
 
-TEST_P(ClusterTest, WhoOutranksWhomMayChangeAtAnyTime) {
-  std::uint64_t hand_offs = 0;
-  for (int seed = 1; seed <= seeds(); ++seed) {
-    const core::Scene scene = scene_for(layout_, seed);
-    ClusterOptions options = options_for(layout_, seed);
-    options.shuffle_ranks_steps = 5 * (seed % 7) + 20;
-    options.sync = SyncMode::kDeterministic;
-    const Outcome o = CheckedRun(scene, options).run(kSteps);
-    EXPECT_EQ(o.doubled + o.lost + o.severed + o.bad_phases, 0u) << describe(seed, o);
-    const Outcome central = run_central(scene, options, kSteps);
-    EXPECT_EQ(first_difference(o, central), kSteps + 1) << "seed " << seed;
-    options.sync = SyncMode::kBounded;
-    const Outcome bounded = CheckedRun(scene, options).run(kSteps);
-    EXPECT_EQ(bounded.late + bounded.missed + bounded.lost + bounded.doubled, 0u) << describe(seed, bounded);
-    hand_offs += o.hand_offs;
-  }
-  EXPECT_GT(hand_offs, static_cast<std::uint64_t>(seeds()));
-  std::cout << seeds() << " seeds, " << hand_offs << " hand-offs\n";
-}
-
 TEST_P(ClusterTest, FreeRunningIsNeverWrongWithoutSayingSo) {
   for (int seed = 1; seed <= seeds(); ++seed) {
     const core::Scene scene = scene_for(layout_, seed);

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/horizon.h"
 #include "core/meetings.h"
 
 namespace aurasim::core::testing {
@@ -34,17 +33,15 @@ class Crowd : public ::testing::TestWithParam<std::tuple<int, AuraKind, Crowded>
     return on_straight_line({}, {}, rules, centre + random.in_box(spread), when, velocity, steps);
   }
 
-  Tally pass_by(int worlds, std::uint32_t crowds_each, bool ranks_change = false) {
-    Random random(ranks_change ? "crowds while ranks change" : "crowds");
+  Tally pass_by(int worlds, std::uint32_t crowds_each) {
+    Random random("crowds");
     Tally tally;
     const double way = 4 * rules.lookahead * rules.top_speed_m_s * rules.step_s;
     const Step steps = 16 * rules.lookahead + 25;
     for (int w = 0; w < worlds; ++w) {
       RoundShapes shapes;
       const PrototypeId kinds[] = {shapes.sphere(random.between(0.05, 1)), shapes.sphere(random.between(0.05, 1))};
-      const Step shuffle_ranks =
-          ranks_change ? 2 + random.below(static_cast<std::uint32_t>(horizon::rank_notice(rules.lookahead))) : 0;
-      KinematicWorld world(std::get<2>(GetParam()).map, rules, shapes, 1e9, shuffle_ranks);
+      KinematicWorld world(std::get<2>(GetParam()).map, rules, shapes);
       const double spread = random.between(0.5, way);
       for (std::uint32_t i = 0; i < crowds_each * kBodies; ++i) {
         Traveller t = passer_by(random, Vec3(0, 0, 300.0 * (i / kBodies)), spread, steps);
@@ -71,15 +68,6 @@ TEST_P(Crowd, MeetsOnOneNodeEach) {
   EXPECT_EQ(t.late, 0u) << t.first_late;
   EXPECT_EQ(t.broken, 0u);
   EXPECT_GT(t.met, 50u);
-}
-
-TEST_P(Crowd, MeetsOnOneNodeEachWhileRanksChange) {
-  const Tally t = pass_by(60, 12, true);
-  std::printf("[  counts  ] K %d S %d: %zu pairs, %zu met, %llu hand-offs, %zu late\n", rules.lookahead, rules.substeps,
-              t.pairs, t.met, static_cast<unsigned long long>(t.hand_offs), t.late);
-  EXPECT_EQ(t.late, 0u) << t.first_late;
-  EXPECT_EQ(t.broken, 0u);
-  EXPECT_GT(t.met, 150u);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Crowd,

@@ -22,7 +22,7 @@ Traveller on_straight_line(BodyId id, PrototypeId prototype, const AuraRules& ru
 }
 
 KinematicWorld::KinematicWorld(const RegionMap& map, const AuraRules& rules, const RoundShapes& shapes,
-                               double neighbour_distance_m, Step shuffle_ranks_steps)
+                               double neighbour_distance_m)
     : rules_(rules), map_(map), shapes_(shapes) {
   for (std::uint32_t r = 0; r < map.size(); ++r) {
     ProtocolSettings settings;
@@ -30,7 +30,6 @@ KinematicWorld::KinematicWorld(const RegionMap& map, const AuraRules& rules, con
     settings.sync = SyncMode::kDeterministic;
     settings.aura = rules;
     settings.neighbour_distance_m = neighbour_distance_m;
-    settings.shuffle_ranks_steps = shuffle_ranks_steps;
     Node& node = nodes_.emplace_back();
     node.protocol = std::make_unique<Protocol>(settings, map_, shapes_);
     node.listeners = map_.neighbours(settings.self, neighbour_distance_m);

@@ -34,7 +34,7 @@ Traveller on_straight_line(BodyId id, PrototypeId prototype, const AuraRules& ru
 class KinematicWorld {
  public:
   KinematicWorld(const RegionMap& map, const AuraRules& rules, const RoundShapes& shapes,
-                 double neighbour_distance_m = 1e9, Step shuffle_ranks_steps = 0);
+                 double neighbour_distance_m = 1e9);
 
   void place(Traveller traveller);
   /// Their overlaps count, and make contacts.

@@ -9,7 +9,6 @@
 #include "core/interest_matching.h"
 #include "core/letters.h"
 #include "core/make_aura.h"
-#include "core/ranks.h"
 #include "core/round_shapes.h"
 
 namespace aurasim::core::testing {
@@ -53,9 +52,7 @@ class TheCheck : public ::testing::Test {
     ours.id = BodyId{1};
     ours.prototype = ball_;
     ours.pose.p_WB = ours_at_;
-    Ranks ranks(1);
-    ranks.begin(step, RegionId{0}, {});
-    matching_.look(own, {}, {}, ranks);
+    matching_.look(own, {}, {});
     check_.take_own(own, matching_);
     check_.look(step, neighbours_);
     return check_.found();

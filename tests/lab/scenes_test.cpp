@@ -128,8 +128,6 @@ TEST_F(Scenes, TheWorldsHaveAllThatHurts) {
                            R"("on_silence":"hold")",
                            R"("on_silence":"zero")",
                            R"("on_silence":"last")",
-                           R"("shuffle_ranks_steps":0)",
-                           R"("shuffle_ranks_steps":3)",
                            R"("can_sleep":false)",
                            R"("linear_damping":)"}) {
     EXPECT_NE(all.find(word), std::string::npos) << word;

@@ -51,14 +51,6 @@ TEST(AuraCodec, RoundTripKeepsAllButWhatRoundingTakes) {
   }
 }
 
-TEST(AuraCodec, RanksComeBack) {
-  core::AuraBatch batch = batch_of(1);
-  batch.ranks = {{1, 17}, {3, batch.stamp}};
-  const auto decoded = decode(encoded(batch), expected());
-  ASSERT_TRUE(std::holds_alternative<core::AuraBatch>(decoded));
-  EXPECT_TRUE(same(std::get<core::AuraBatch>(decoded), batch));
-}
-
 /// A batch that is refused for its orders would stop the cluster: whatever can be announced can be read.
 TEST(AuraCodec, OrdersOfEveryKindComeBack) {
   core::AuraBatch batch = batch_of(1);
@@ -323,8 +315,6 @@ const Spoilt kSpoilt[] = {
      },
      WireError::kRotation},
     {"NegativeStamp", [](Wire& w) { w.stamp(-1); }, WireError::kRange},
-    {"RankOfTheFuture", [](Wire& w) { w.rank_next_stamp(w.stamp() + 1); }, WireError::kRange},
-    {"RanksOutOfOrder", [](Wire& w) { w.rank_held_stamp(w.rank_next_stamp() + 1); }, WireError::kRange},
     {"NegativeStateStamp", [](Wire& w) { w.elsewhere_stamp()[0] = -1; }, WireError::kRange},
     {"NegativeBirth", [](Wire& w) { w.unborn_birth()[0] = -5; }, WireError::kRange},
     {"ElsewhereOfNoRow", [](Wire& w) { w.elsewhere_row()[0] = 8; }, WireError::kRange},

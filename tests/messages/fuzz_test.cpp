@@ -220,7 +220,7 @@ TEST(Guard, AnAbsurdLengthAsksForNoMemory) {
   wire::AuraBatch message;
   encode(testing::batch_of(0), message);
   Bytes bytes = bytes_of(type, message);
-  const std::size_t id_length_at = 4 + 96;  // encapsulation, then the header up to `rank_next_stamp`
+  const std::size_t id_length_at = 4 + 72;  // encapsulation, then the header up to `violations`
   const std::uint32_t absurd = 0xffff'ffffU;
   std::memcpy(bytes.data() + id_length_at, &absurd, sizeof absurd);
   SerializedPayload_t payload(static_cast<std::uint32_t>(bytes.size()));

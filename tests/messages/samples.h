@@ -74,7 +74,6 @@ inline core::AuraBatch batch_of(std::size_t auras, core::RegionId source = core:
   batch.top_speed_m_s = 31.4;
   batch.top_radius_m = 0.87;
   batch.violations = 5;
-  batch.ranks = {{1, 0}, {3, 0}};  // not after any stamp
   for (std::size_t i = 0; i < auras; ++i) {
     batch.updates.push_back(aura_of(i));
   }
@@ -181,7 +180,7 @@ inline bool same(const core::AuraRecord& a, const core::AuraRecord& b) {
 inline bool same(const core::AuraBatch& a, const core::AuraBatch& b) {
   return a.source == b.source && a.generation == b.generation && a.stamp == b.stamp && a.map_version == b.map_version &&
          a.full == b.full && same(a.top_speed_m_s, b.top_speed_m_s) && same(a.top_radius_m, b.top_radius_m) &&
-         a.violations == b.violations && a.ranks.held == b.ranks.held && a.ranks.next == b.ranks.next &&
+         a.violations == b.violations &&
          same_rows(a.updates, b.updates, [](const auto& x, const auto& y) { return same(x, y); }) &&
          a.deletes == b.deletes && same_rows(a.hand_offs, b.hand_offs, [](const auto& x, const auto& y) {
            return x.destination == y.destination && x.last_sequence == y.last_sequence;

@@ -20,7 +20,7 @@ using ::testing::IsEmpty;
 constexpr int kLookahead = 2;
 constexpr Step kEvery = core::horizon::kBetweenOlderCuts;
 
-Cut cut_of(Step step) { return {step, {}, {}, {}, core::RankClaimer(core::RegionId{0}, kLookahead, 0), {}}; }
+Cut cut_of(Step step) { return {step, {}, {}, {}, {}}; }
 
 core::Adoption sent_in(Step stamp) {
   core::Adoption adoption;

@@ -152,7 +152,6 @@ std::vector<Json> sorted(const Json& json, const char* list, const char* key) {
 /// Reads orders in the sequence in which they will be given, because the objects that they add are numbered.
 Interference interference_in(const Json& json, const core::Scene& scene) {
   Interference interference;
-  interference.shuffle_ranks_steps = json.value("shuffle_ranks_steps", core::Step{0});
   RequestReader reader(scene);
   for (const Json& order : sorted(json, "orders", "at_step")) interference.requests.push_back(reader.read(order));
   for (const Json& word : sorted(json, "programs", "said_step")) {

@@ -1,6 +1,5 @@
 // Orders and setpoints that act on a world in mid-run: interference.json beside its launch file.
-//   {"shuffle_ranks_steps": 30,
-//    "orders": [{"at_step": 120, "remove_body": 7},
+//   {"orders": [{"at_step": 120, "remove_body": 7},
 //               {"at_step": 90, "spawn": {"id": 1000000001, "prototype": "box_3", "position": [..], "velocity": [..]}},
 //               {"at_step": 95, "spawn": {"id": 1000000002, "sphere": {"radius": 0.2}, "mass": 3, ...}},
 //               {"at_step": 150, "impulse": {"body": 3, "value": [..]}},
@@ -44,7 +43,6 @@ struct Word {
 };
 
 struct Interference {
-  core::Step shuffle_ranks_steps = 0;
   std::vector<Request> requests;  ///< ascending at_step
   std::vector<Word> words;        ///< ascending said_step
 };

@@ -1,4 +1,4 @@
-// Random events that a launch file cannot contain: clients' requests in mid-run, and changing ranks.
+// Random events that a launch file cannot contain: clients' requests in mid-run.
 #pragma once
 
 #include "lab/pair.h"

@@ -171,7 +171,6 @@ void make_plain(Shrinker& shrinker) {
     change(plainer);
     shrinker.accept(std::move(plainer));
   };
-  try_world([](World& world) { world.interference["shuffle_ranks_steps"] = 0; });
   for (const char* key : {"solver", "iterations", "friction_directions", "erp", "continuous"}) {
     if (shrinker.best().world.launch["physics"].contains(key)) {
       try_world([&](World& world) { world.launch["physics"].erase(key); });

@@ -106,7 +106,6 @@ bool compare_runs(const config::Launch& launch, Interference interference, const
   ClusterRules cluster_rules = launch_rules(launch, rules.setup_of);
   cluster_rules.hash_states = true;
   cluster_rules.bandwidth_B_s = kUnlimited_B_s;  // coded as for DDS, but not held up
-  cluster_rules.shuffle_ranks_steps = interference.shuffle_ranks_steps;
   set_network(cluster_rules, rules.bad_network, seed);
   ClusterRules loaded_rules = cluster_rules;  // on other regions
   if (rules.partitions) add_partitions(cluster_rules, launch.regions.size(), rules.steps, seed);
