@@ -62,10 +62,6 @@ constexpr Step promise(int lookahead) { return 2 * lookahead; }
 /// A cluster has to be an island for so many states in a row before it goes home. By then all that was sent because of
 /// its earlier place has arrived and was looked at.
 constexpr Step homecoming(int lookahead) { return 2 * lookahead + 1; }
-/// Steps for which a cluster that holds pulled bodies waits for one of them to touch something before it goes home. A
-/// pull comes early by at most the way that both may leave their paths, through kMostHops regions: less than 28 K
-/// states for two that come together at half of their speed.
-constexpr Step pull(int lookahead) { return 40 * lookahead; }
 /// For so many steps a broken promise can spoil decisions: until its auras and hand-offs are replaced, and both looks
 /// ahead are over.
 constexpr Step blame(int lookahead) { return 6 * lookahead + 2; }

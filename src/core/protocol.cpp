@@ -90,29 +90,7 @@ void Protocol::take_if_newer(Adoption& adoption) {
     if (!gone) let_go(body.id);
     return false;
   });
-  if (adoption.cluster.bodies.empty()) return;
-  if (adoption.reason == HandOffReason::kAuraCollision) {
-    const Step until = adoption.stamp + horizon::pull(aura_->rules().lookahead);
-    for (const BodyRecord& body : adoption.cluster.bodies) pulled_.push_back({body.id, until});
-  }
-  changes_.adoptions.push_back(std::move(adoption));
-}
-
-/// Marks bodies that wait for a touch after a pull. If the pair went home first and met only there, it would change
-/// host twice for one contact.
-void Protocol::note_who_waits(const Snapshot& snapshot) {
-  waits_.assign(snapshot.bodies.size(), 0);
-  std::erase_if(pulled_, [&](Pulled& pulled) {
-    const auto here = std::lower_bound(snapshot.bodies.begin(), snapshot.bodies.end(), pulled.id,
-                                       [](const BodyState& body, BodyId id) { return body.id < id; });
-    if (here == snapshot.bodies.end() || here->id != pulled.id || snapshot.step >= pulled.until) return true;
-    pulled.i = static_cast<std::uint32_t>(here - snapshot.bodies.begin());
-    waits_[pulled.i] = 1;
-    return false;
-  });
-  if (pulled_.empty()) return;
-  for (const Contact& contact : snapshot.contacts) waits_[contact.a] = waits_[contact.b] = 0;
-  std::erase_if(pulled_, [&](const Pulled& pulled) { return !waits_[pulled.i]; });
+  if (!adoption.cluster.bodies.empty()) changes_.adoptions.push_back(std::move(adoption));
 }
 
 void Protocol::let_go_of_what_others_own() {
@@ -154,7 +132,6 @@ const std::vector<Departure>& Protocol::observe(const Snapshot& snapshot) {
   Progress::mark();
   check(snapshot);
   projection_.classify(snapshot, matching_);
-  note_who_waits(snapshot);
   decide(snapshot);
   projection_.publish(snapshot, outbox_.aura, violations_, full_);
   last_violation_step_ = std::max(last_violation_step_, violations_.last_step());

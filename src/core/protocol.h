@@ -188,7 +188,6 @@ class Protocol {
   void decide_for_cluster(std::uint32_t i, const Snapshot& snapshot);
   void send_home(const Snapshot& snapshot);
   void decide_naively(std::uint32_t i, const Snapshot& snapshot);
-  void note_who_waits(const Snapshot& snapshot);
   bool settles_elsewhere(std::uint32_t i, Step now);
   RegionId lowest_owner(std::uint32_t i) const;
   void depart(std::uint32_t i, RegionId destination, HandOffReason reason, const Snapshot& snapshot);
@@ -223,14 +222,6 @@ class Protocol {
   std::vector<std::uint8_t> decided_;
   std::vector<std::uint32_t> homing_;    ///< a body of each cluster that is to go home
   std::vector<std::uint8_t> goes_home_;  ///< by cluster
-  /// A body that came here by a pull and has touched nothing since.
-  struct Pulled {
-    BodyId id{};
-    Step until = 0;       ///< its cluster waits for a touch until this state
-    std::uint32_t i = 0;  ///< its place in the snapshot
-  };
-  std::vector<Pulled> pulled_;
-  std::vector<std::uint8_t> waits_;  ///< by body: it is in pulled_
   Outbox outbox_;
   ProtocolCounters counters_;
   ViolationLog violations_;

@@ -66,12 +66,11 @@ void Protocol::decide_naively(std::uint32_t i, const Snapshot& snapshot) {
   }
 }
 
-/// Has the cluster of body i been an island, without a body that waits for a touch, for 2K+1 states in a row?
+/// Has the cluster of body i been an island for 2K+1 states in a row?
 bool Protocol::settles_elsewhere(std::uint32_t i, Step now) {
   bool island = !matching_.touched(i) && !matching_.expected(i);
   if (island) {
-    matching_.clusters().for_each_member(
-        i, [&](std::uint32_t j) { island = island && matching_.outside(j) && !waits_[j]; });
+    matching_.clusters().for_each_member(i, [&](std::uint32_t j) { island = island && matching_.outside(j); });
   }
   Step since = 0;
   matching_.clusters().for_each_member(i, [&](std::uint32_t j) {

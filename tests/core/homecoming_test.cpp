@@ -29,33 +29,20 @@ class Arrival : public ProtocolTest {
   const Step island = 2 * settings.aura.lookahead + 2;
 };
 
-TEST_F(Arrival, OfWhomNobodyPulledGoesHomeAsSoonAsItIsAnIsland) {
-  arrive(HandOffReason::kBoundaryTraversal);
-  pass_steps_until(island);
-  EXPECT_FALSE(is_here());
+TEST_F(Arrival, GoesHomeAsSoonAsItIsAnIsland) {
+  for (const HandOffReason why : {HandOffReason::kBoundaryTraversal, HandOffReason::kAuraCollision}) {
+    snapshot = {};
+    now = 0;
+    arrive(why);
+    pass_steps_until(island - 1);
+    EXPECT_TRUE(is_here());
+    pass_steps_until(island);
+    EXPECT_FALSE(is_here());
+  }
 }
 
-TEST_F(Arrival, ByAPullStaysUntilItHasTouchedSomething) {
-  arrive(HandOffReason::kAuraCollision);
-  pass_steps_until(3 * island);
-  ASSERT_TRUE(is_here());
-  host(8, Vec3(20, 1, 0));
-  snapshot.contacts.push_back({0, 1});
-  pass_step();
-  snapshot.contacts.clear();
-  pass_steps_until(now + island);
-  EXPECT_FALSE(is_here());
-}
-
-TEST_F(Arrival, ByAPullThatCameToNothingGoesHomeInTheEnd) {
-  arrive(HandOffReason::kAuraCollision);
-  pass_steps_until(horizon::pull(settings.aura.lookahead) - 1);
-  EXPECT_TRUE(is_here());
-  pass_steps_until(now + island + 1);
-  EXPECT_FALSE(is_here());
-}
-
-/// A ball comes up from behind that waits for whoever it was pulled to. The way home looks a hop further than clusters.
+/// A ball comes up from behind that stays, because it is connected with one of our region. The way home looks a hop
+/// further than clusters.
 TEST_F(Arrival, GoesHomeOnlyIfNobodyWhoStaysMayMeetItSoon) {
   const std::unique_ptr<const Aura> aura = make_aura(settings.aura, shapes);
   int in_between = 0;
@@ -65,22 +52,26 @@ TEST_F(Arrival, GoesHomeOnlyIfNobodyWhoStaysMayMeetItSoon) {
     now = 0;
     arrive(HandOffReason::kBoundaryTraversal);
     HandOff h = hand_off(1, 0, 0, {record_of(8, 1)});
-    h.reason = HandOffReason::kAuraCollision;
     receive(std::move(h), 2);
     host(8, Vec3(19 - gap_m, 0, 0), Vec3(6, 0, 0)).epoch = 1;
+    host(9, Vec3(-20, 0, 0));
     std::vector<Path> paths;
     for (const BodyState& each : snapshot.bodies) {
       paths.push_back(path_of(each, 0, shapes));
       paths.back().speed_m_s = aura->speed_of(each);
     }
     Clusters clusters(*aura);
-    clusters.begin(paths, std::vector<std::uint64_t>(2), {}, {});
+    clusters.begin(paths, std::vector<std::uint64_t>(paths.size()), {}, {});
     clusters.complete(0);
     const bool one_cluster = clusters.of(0) == clusters.of(1);
     const bool meets_soon = clusters.any_near(0, horizon::kHomewardHops, [](std::uint32_t) { return true; });
     in_between += meets_soon ? 1 : 0;
-    pass_steps_until(3 * island);
-    EXPECT_EQ(snapshot.bodies.size() == 2, one_cluster || meets_soon);
+    while (now < 3 * island) {
+      const auto last = static_cast<std::uint32_t>(snapshot.bodies.size() - 1);
+      snapshot.contacts = {{last - 1, last}};
+      pass_step();
+    }
+    EXPECT_EQ(snapshot.bodies.size() == 3, one_cluster || meets_soon);
   }
   EXPECT_GT(in_between, 0);
 }
