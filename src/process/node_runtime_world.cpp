@@ -88,6 +88,7 @@ void NodeRuntime::begin_changed_map() {
 void NodeRuntime::record(std::span<const node::StepReport> reports) {
   for (const node::StepReport& report : reports) {
     notices.note_removals(report.removals);
+    notices.note_cluster(report.largest_cluster, report.bodies, report.step);
     setpoints.note_unbearable(report.unbearable);
     if (!report.put_back_from) saving.note_recorded(report.step);
     records.write(report);

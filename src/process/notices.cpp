@@ -13,6 +13,9 @@ using namespace std::chrono_literals;
 
 constexpr auto kLongWait = 2s;
 
+/// Smaller clusters are no reason for a message, even if they are all that a node hosts.
+constexpr std::size_t kLargeCluster = 1000;
+
 std::string text_of(const MissingRegion& missing) {
   std::string text = fmt::format("{}", core::value_of(missing.region));
   if (missing.long_step) text += fmt::format(" ({})", *missing.long_step);
@@ -44,6 +47,17 @@ void Notices::note_removals(std::span<const physics::Removal> removals) {
     note_fault(fmt::format("body {} was taken out in state {}: {}", core::value_of(removal.body), removal.step,
                            removal.fault));
   }
+}
+
+void Notices::note_cluster(std::size_t largest_cluster, std::size_t hosted, core::Step step) {
+  if (says_large_cluster_ || largest_cluster < kLargeCluster || 2 * largest_cluster < hosted) return;
+  says_large_cluster_ = true;
+  news_ = fmt::format(
+      "{} of the {} bodies here are one cluster in state {}: they touch each other or may do so soon, so one node has "
+      "to host them. More nodes do not make this run faster. Borders that do not run through the heap, a smaller "
+      "time.lookahead or a smaller aura.uncertainty may help",
+      largest_cluster, hosted, step);
+  spdlog::warn("region {}: {}", core::value_of(region_), news_);
 }
 
 bool Notices::waits_for_long(Clock::time_point now) {

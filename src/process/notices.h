@@ -38,6 +38,9 @@ class Notices {
   void note_fault(std::string text);
   /// To be called when a world begins: its protocol counts refusals anew.
   void begin_refusals() { refusals_noted_ = 0; }
+  /// Logs once that most of this node's bodies are in one cluster, which cannot be divided among nodes. `hosted`: all
+  /// bodies of this node in state `step`.
+  void note_cluster(std::size_t largest_cluster, std::size_t hosted, core::Step step);
   /// Logs refused messages of neighbours that are new. `refusals`: all of this world. The content of a refused message
   /// is lost for good, so the protocol has marked its sender dead.
   void note_refusals(const std::vector<core::Refusal>& refusals);
@@ -67,6 +70,7 @@ class Notices {
   std::size_t refusals_noted_ = 0;
   std::uint64_t broken_bodies_ = 0;
   bool says_records_end_ = false;
+  bool says_large_cluster_ = false;
 };
 
 }  // namespace aurasim::process
