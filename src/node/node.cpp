@@ -71,7 +71,7 @@ void Node::announce_births(core::Step state) {
     record.epoch = first_epoch_;
     if (body.order) world_.schedule(*body.order);  // the body's shape may be new
     world_.add({&record, 1});
-    watch_.newborn(record.id, record.birth);
+    if (!protocol_->computes_again()) watch_.newborn(record.id, record.birth);
     report_.births.push_back({record.id, record.birth});
     if (body.order) report_.applied.push_back({body.order->request, record.birth, core::ref_of(record.id)});
   }

@@ -54,7 +54,7 @@ void Node::note_arrivals(const core::Adoption& adoption) {
     row.destination = region();
     row.reason = adoption.reason;
   }
-  watch_.join(adoption);
+  if (!protocol_->computes_again()) watch_.join(adoption);  // else nobody looks for late collisions
 }
 
 void Node::count(const core::Snapshot& snapshot) {

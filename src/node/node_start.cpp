@@ -45,7 +45,7 @@ const StepReport& Node::start(core::WorldCut world, Recorded recorded) {
   put_in(part);
   for (const core::BodyRecord& body : part.bodies.bodies) {
     report_.births.push_back({body.id, body.birth});
-    if (body.birth > part.step) watch_.newborn(body.id, body.birth);
+    if (body.birth > part.step && !protocol_->computes_again()) watch_.newborn(body.id, body.birth);
   }
   begin_state(recorded);
   take_cut();
