@@ -53,13 +53,25 @@ double Aura::listening_distance_m(double largest_radius_m) const {
   return zone(rules_.top_speed_m_s, kHops, rules_.top_speed_m_s, largest_radius_m) + largest_radius_m;
 }
 
-Pose Aura::ahead(const Path& path, double steps) const {
+/// For how long the body of `path` will have moved `steps` from now, in seconds. 0 or less: it has not moved yet.
+double Aura::time_ahead(const Path& path, double steps) const {
+  if (!path.moves) return 0;
   const double k = path.age_steps + steps - (path.unborn_steps > 0 ? path.age_steps + path.unborn_steps : 0);
-  if (!path.moves || k <= 0) return path.pose;
-  const double t = k * rules_.step_s;
+  return k * rules_.step_s;
+}
+
+Vec3 Aura::place_ahead(const Path& path, double steps) const {
+  const double t = time_ahead(path, steps);
+  if (t <= 0) return path.pose.p_WB;
   const double h = rules_.looks_once ? 0 : rules_.step_s / rules_.substeps;
   // Bullet integrates velocity before position: in t, m substeps of length h fall g h^2 m (m+1) / 2 = g t (t + h) / 2.
-  Pose pose{path.pose.p_WB + path.v_WB * t + rules_.gravity * (0.5 * t * (t + h)), path.pose.q_WB};
+  return path.pose.p_WB + path.v_WB * t + rules_.gravity * (0.5 * t * (t + h));
+}
+
+Pose Aura::ahead(const Path& path, double steps) const {
+  const double t = time_ahead(path, steps);
+  Pose pose{place_ahead(path, steps), path.pose.q_WB};
+  if (t <= 0) return pose;
   const double spin = path.w_WB.norm();
   if (spin > 1e-6) pose.q_WB = Quat(Eigen::AngleAxisd(spin * t, path.w_WB / spin)) * path.pose.q_WB;
   return pose;

@@ -100,6 +100,9 @@ class Aura {
   /// A body projects to the host of a foreign one when their bounding spheres are this near, wherever they are.
   /// Evaluate the range at the own body's speed.
   Range notice(double foreign_speed_m_s, double foreign_age_steps, int hops) const;
+  /// May a foreign body and one of ours come together so soon that ours has to be announced to that one's host? Only
+  /// asked within notice().
+  virtual bool may_approach(const Path& /*foreign*/, const Path& /*own*/, int /*hops*/) const { return true; }
   /// Beyond this distance between bounding spheres neither meets() nor meets_ghost() is true for a foreign body.
   /// Evaluate the range at drift_m_s() of the own body.
   Range meet_range(const Path& foreign, int hops) const;
@@ -112,6 +115,8 @@ class Aura {
 
   /// How fast a body may leave its present place, along its path and off it, m/s.
   double drift_m_s(const Path& path) const { return path.v_WB.norm() + rules_.uncertainty * path.speed_m_s; }
+  /// Place of the body of `path`, `steps` from now.
+  Vec3 place_ahead(const Path& path, double steps) const;
   /// Pose of the body of `path`, `steps` from now.
   Pose ahead(const Path& path, double steps) const;
 
@@ -136,6 +141,7 @@ class Aura {
   double gravity_m_s2() const { return gravity_m_s2_; }
 
  private:
+  double time_ahead(const Path& path, double steps) const;
   Range reach(const Steps& steps, double other_drift_m_s) const;
   double most_drift(double speed_m_s) const { return (1 + rules_.uncertainty) * speed_m_s; }
   Range by_speed(const Range& by_drift) const { return {by_drift.fixed_m, most_drift(by_drift.per_speed_s)}; }

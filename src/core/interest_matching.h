@@ -36,8 +36,9 @@ class InterestMatching {
   const Path& path(std::uint32_t i) const { return paths_[i]; }
   BodyId id(std::uint32_t i) const { return ids_[i]; }
 
-  /// Is body i near enough to another region, or to a foreign body, that others have to know of it?
-  bool must_be_announced(std::uint32_t i) const;
+  /// The regions that have to know of body i, because it is near their territory or near a body that they host. All
+  /// listeners if the body's centre is outside our region: they may host bodies out there that we do not know.
+  Audience audience(std::uint32_t i) const;
   /// No part of the body's bounding sphere is over its host's region (kNone: its centre is not).
   bool outside(std::uint32_t i) const;
   /// An aura from elsewhere has met the cluster of body i.
@@ -74,11 +75,12 @@ class InterestMatching {
                       std::span<const AuraRecord> ghosts);
   void mark_regions();
   void complete_near_boundaries();
+  int least_hops() const;
   void pair_up();
   void notice(const ForeignBlock& block);
   void notice_grown();
   void notice_again(std::uint32_t own);
-  void note(std::uint32_t own, std::uint64_t region);
+  void note(std::uint32_t own, RegionId host);
   void take_news();
   void find_pairs(const ForeignBlock& block);
   bool is_in_range(const ForeignBlock& block, std::size_t k, const Candidate& own) const;
@@ -90,7 +92,10 @@ class InterestMatching {
   void for_each_foreign_near(std::uint32_t own, Visit&& visit) const;
   void judge();
   void judge(const Pair& pair);
-  void judge_touched(const Pair& pair);
+  void judge_expected(const Pair& pair);
+  void hit(std::uint32_t own, RegionId host);
+  void complete_hit_clusters();
+  bool pulls_chain() const { return !aura_.rules().redo; }
   void bring_together(const Snapshot& snapshot);
   std::optional<std::uint32_t> own_index(BodyId id) const;
   bool meets(const Foreign& foreign, const Path& own, int hops) const;
@@ -114,17 +119,23 @@ class InterestMatching {
   std::vector<Candidate> candidates_;  ///< our bodies that may be in range of a block
   struct News {
     std::uint32_t own;
-    std::uint64_t region;
+    Audience region;
   };
   std::vector<News> news_;            ///< our bodies and the regions newly found to have a body near them
   std::vector<std::uint32_t> grown_;  ///< our bodies whose range has grown
   std::vector<std::uint32_t> near_;
   std::vector<std::uint8_t> noticed_;
-  std::vector<std::uint64_t> noticed_by_;  ///< bits of regions
-  std::vector<std::uint8_t> touched_;      ///< by cluster
-  std::vector<std::uint8_t> expected_;     ///< by cluster
-  std::vector<RegionId> pulled_to_;        ///< by cluster
-  double widest_band_m_ = 0;               ///< beyond it, no body is near another region
+  std::vector<Audience> noticed_by_;  ///< hosts of the foreign bodies near each of ours
+  std::vector<std::uint8_t> announced_to_all_;
+  struct Hit {
+    std::uint32_t own;
+    RegionId host;
+  };
+  std::vector<Hit> hits_;               ///< our bodies that met an aura, and its host
+  std::vector<std::uint8_t> touched_;   ///< by cluster
+  std::vector<std::uint8_t> expected_;  ///< by cluster
+  std::vector<RegionId> pulled_to_;     ///< by cluster
+  double widest_band_m_ = 0;            ///< beyond it, no body is near another region
   double others_top_speed_ = 0;
   double others_top_radius_ = 0;
 };

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/audience.h"
 #include "core/body_state.h"
 #include "core/ids.h"
 #include "core/introduction.h"
@@ -35,6 +36,8 @@ struct AuraRecord {
   Vec3 v_WB = Vec3::Zero();  ///< v_WB and w_WB are used by AuraKind::kSwept, and with a redo
   Vec3 w_WB = Vec3::Zero();
   double speed_m_s = 0;  ///< top speed that it may come to have (core/aura.h)
+  /// The listeners for which this is. The others forget what they knew of the body.
+  Audience audience = kAllListeners;
 };
 
 /// Sequence number of the last hand-off sent to `destination` up to a batch's stamp.

@@ -73,7 +73,7 @@ void Neighbour::apply(AuraBatch& batch) {
 
 void Neighbour::merge(AuraBatch& batch) {
   if (batch.updates.empty() && batch.deletes.empty()) return;
-  std::stable_sort(batch.updates.begin(), batch.updates.end(), by_id);
+  if (!std::ranges::is_sorted(batch.updates, by_id)) std::ranges::stable_sort(batch.updates, by_id);
   std::sort(batch.deletes.begin(), batch.deletes.end());
   merged_.clear();
   auto old = auras_.begin();
@@ -82,10 +82,11 @@ void Neighbour::merge(AuraBatch& batch) {
     while (gone != batch.deletes.end() && *gone < aura.id) ++gone;
     if (gone == batch.deletes.end() || *gone != aura.id) merged_.push_back(aura);
   };
+  const Audience self = audience_of(self_);
   for (const AuraRecord& update : batch.updates) {
     for (; old != auras_.end() && old->id < update.id; ++old) keep(*old);
     if (old != auras_.end() && old->id == update.id) ++old;
-    merged_.push_back(update);
+    if (update.audience & self) merged_.push_back(update);
   }
   for (; old != auras_.end(); ++old) keep(*old);
   std::swap(auras_, merged_);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/audience.h"
 #include "core/messages.h"
 
 namespace aurasim::core {
@@ -55,7 +56,8 @@ class Neighbour {
   /// Marks the neighbour dead and drops all that it has published.
   void mark_dead();
 
-  const std::vector<AuraRecord>& auras() const { return auras_; }  ///< ascending id
+  /// The auras that are for us, ascending id.
+  const std::vector<AuraRecord>& auras() const { return auras_; }
   /// AuraBatch::past of the last batch in effect: made-up states of bodies that joined the neighbour late.
   const std::vector<AuraRecord>& past() const { return past_; }
   double top_speed_m_s() const { return top_speed_m_s_; }

@@ -14,7 +14,7 @@ namespace {
 bool has_news(const AuraRecord& published, const AuraRecord& now) {
   const bool asleep = (now.flags & kAuraAsleep) != 0;
   return !asleep || published.flags != now.flags || published.speed_m_s != now.speed_m_s ||
-         published.epoch != now.epoch || published.pose.p_WB != now.pose.p_WB;
+         published.epoch != now.epoch || published.pose.p_WB != now.pose.p_WB || published.audience != now.audience;
 }
 
 /// Published auras are scattered in memory and no longer cached after physics has run. Without prefetch, waiting for
@@ -76,12 +76,13 @@ void Projection::move(Track& track, PhaseEvent event) {
   track.phase = *next;
 }
 
-AuraRecord Projection::describe(const BodyState& body, Step stamp) const {
+AuraRecord Projection::describe(const BodyState& body, Audience audience, Step stamp) const {
   AuraRecord aura = aura_record(body, vicinity_.self, stamp);
   if (!aura_.predicts() && !aura_.rules().redo) {  // other nodes use positions and sizes only
     aura.v_WB = aura.w_WB = Vec3::Zero();
   }
   aura.speed_m_s = aura_.speed_of(body);
+  aura.audience = audience;
   return aura;
 }
 
@@ -95,9 +96,11 @@ void Projection::publish(Track& track, const AuraRecord& aura, AuraBatch& batch,
 
 void Projection::classify(const Snapshot& snapshot, const InterestMatching& matching) {
   for (std::uint32_t i = 0; i < snapshot.bodies.size(); ++i) {
-    move(tracks_[i], matching.outside(i)             ? PhaseEvent::kOutside
-                     : matching.must_be_announced(i) ? PhaseEvent::kNearBoundary
-                                                     : PhaseEvent::kFarFromBoundary);
+    Track& track = tracks_[i];
+    track.audience = matching.audience(i);
+    move(track, matching.outside(i)                ? PhaseEvent::kOutside
+                : track.audience != kNobodyListens ? PhaseEvent::kNearBoundary
+                                                   : PhaseEvent::kFarFromBoundary);
   }
 }
 
@@ -115,7 +118,7 @@ void Projection::publish(const Snapshot& snapshot, AuraBatch& batch, ViolationLo
       ++projecting_;
       check_promise(track, body, snapshot.step, violations);
       check_span(track, body, snapshot.step, violations);
-      publish(track, describe(body, snapshot.step), batch, full);
+      publish(track, describe(body, track.audience, snapshot.step), batch, full);
     } else if (track.projected()) {
       ++counters_.deleted;
       track.published.reset();
@@ -134,7 +137,7 @@ void Projection::depart(const BodyState& body, std::uint32_t i, RegionId destina
                         AuraBatch& batch) {
   Track& track = tracks_[i];
   move(track, why);
-  AuraRecord ghost = describe(body, batch.stamp);
+  AuraRecord ghost = describe(body, track.audience, batch.stamp);
   ghost.host = destination;
   ghost.epoch = body.epoch + 1;
   ghost.flags |= kAuraGhost;

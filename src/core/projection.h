@@ -21,9 +21,10 @@ struct Track {
   BodyId id{};
   Epoch epoch = 0;
   Phase phase = Phase::kInjected;
-  bool too_fast = false;     ///< kSpeed violation already counted
-  bool out_of_span = false;  ///< kSpan violation already counted
-  Step island_since = -1;    ///< first of the consecutive states in which its cluster was an island; -1: is none
+  bool too_fast = false;               ///< kSpeed violation already counted
+  bool out_of_span = false;            ///< kSpan violation already counted
+  Audience audience = kNobodyListens;  ///< regions to which its aura goes
+  Step island_since = -1;  ///< first of the consecutive states in which its cluster was an island; -1: is none
   struct Published {
     AuraRecord newest;
     AuraRecord promise;  ///< an older aura, kept until its promise can be checked
@@ -51,7 +52,7 @@ class Projection {
   /// The track of a body; null if it was not hosted here in the last state.
   const Track* find(BodyId id) const;
 
-  /// Moves every body to the phase that follows from its place.
+  /// Moves every body to the phase that follows from its place, and decides to whom its aura goes.
   void classify(const Snapshot& snapshot, const InterestMatching& matching);
 
   /// Writes creations, updates and deletions of the bodies that stay into `batch`; `full`: writes all projected auras,
@@ -72,7 +73,7 @@ class Projection {
   void take_back_gone(AuraBatch& batch);
   void keep_newest_ghosts();
   void expire_ghosts(const Snapshot& snapshot, AuraBatch& batch);
-  AuraRecord describe(const BodyState& body, Step stamp) const;
+  AuraRecord describe(const BodyState& body, Audience audience, Step stamp) const;
   void check_promise(Track& track, const BodyState& body, Step now, ViolationLog& violations);
   void check_speed(Track& track, const BodyState& body, Step now, ViolationLog& violations);
   void check_span(Track& track, const BodyState& body, Step now, ViolationLog& violations);

@@ -25,6 +25,10 @@ bool SweptAura::meets(const Path& foreign, const Path& own, int hops) const {
   return paths_meet(foreign, own, horizon::meeting(rules().lookahead, hops));
 }
 
+bool SweptAura::may_approach(const Path& foreign, const Path& own, int hops) const {
+  return !rules().redo || !stay_apart(foreign, own, horizon::announcing(rules().lookahead, hops));
+}
+
 bool SweptAura::linked(const Path& a, const Path& b, int hops) const {
   return paths_meet(a, b, horizon::linking(rules().lookahead, hops));
 }
@@ -60,12 +64,36 @@ double SweptAura::last_instant(int horizon_steps) const {
   return std::max(0.0, horizon_steps - 1.0 / rules().instants());
 }
 
+/// Two bodies meet if they are this near to each other `steps` from now.
+double SweptAura::allowed_m(const Path& a, const Path& b, double steps) const {
+  // Where physics looks ahead, half of the relative way between two instants is added.
+  const double half_way =
+      rules().looks_ahead() ? 0.5 * rules().step_s * (a.v_WB - b.v_WB).norm() / rules().instants() : 0;
+  // One of the two may stand on something and not fall as its path assumes. If both stand, their distance is the same.
+  const double unfallen = drop_m(std::max(a.moves ? a.age_steps + steps : 0, b.moves ? b.age_steps + steps : 0));
+  const double off_path = rules().uncertainty * rules().step_s *
+                          (a.speed_m_s * (a.age_steps + steps) + b.speed_m_s * (b.age_steps + steps));
+  return rules().reach_scale * (rules().contact_margin_m + half_way + a.blur_m + b.blur_m + unfallen + off_path);
+}
+
+/// True if the bounding spheres of two bodies come at no time within `last` steps as near to each other as they may be
+/// at the end. Cheap, and right for most pairs. Of two bodies that fall, each sees the other on a straight way; the way
+/// of a falling body past a sleeping one bulges.
+bool SweptAura::stay_apart(const Path& a, const Path& b, double last) const {
+  if (a.unborn_steps > 0 || b.unborn_steps > 0) return false;
+  const Vec3 from = place_ahead(a, 0) - place_ahead(b, 0);
+  const Vec3 way = place_ahead(a, last) - place_ahead(b, last) - from;
+  const double length_squared = way.squaredNorm();
+  const double share = length_squared > 0 ? std::clamp(-from.dot(way) / length_squared, 0.0, 1.0) : 0;
+  const double t = last * rules().step_s;
+  const double bulge = a.moves != b.moves ? gravity_m_s2() * t * t / 8 : 0;
+  return (from + share * way).norm() - a.radius_m - b.radius_m > allowed_m(a, b, last) + bulge;
+}
+
 bool SweptAura::paths_meet(const Path& a, const Path& b, int horizon_steps) const {
   const int instants = rules().instants();
-  const double spread = rules().uncertainty * rules().step_s;
   const double last = horizon_steps;
-  // Where physics looks ahead, half of the relative way between two instants is added.
-  const double half_way = rules().looks_ahead() ? 0.5 * rules().step_s * (a.v_WB - b.v_WB).norm() / instants : 0;
+  if (stay_apart(a, b, last)) return false;
   // Upper bound of how fast the clearance shrinks, in metres per step.
   const double oldest = std::max(a.age_steps, b.age_steps);
   const double fall = gravity_m_s2() * (a.age_steps + b.age_steps + oldest + 3 * last) * rules().step_s;
@@ -78,18 +106,11 @@ bool SweptAura::paths_meet(const Path& a, const Path& b, int horizon_steps) cons
       ++i;
       continue;
     }
-    const Pose at = ahead(a, k);
-    const Pose bt = ahead(b, k);
-    // One of the two may stand on something and not fall as its path assumes. If both stand, their distance is the
-    // same.
-    const double unfallen = drop_m(std::max(a.moves ? a.age_steps + k : 0, b.moves ? b.age_steps + k : 0));
-    const double allowed =
-        rules().reach_scale * (rules().contact_margin_m + half_way + a.blur_m + b.blur_m + unfallen +
-                               spread * (a.speed_m_s * (a.age_steps + k) + b.speed_m_s * (b.age_steps + k)));
-    double gap = (at.p_WB - bt.p_WB).norm() - a.radius_m - b.radius_m;
+    const double allowed = allowed_m(a, b, k);
+    double gap = (place_ahead(a, k) - place_ahead(b, k)).norm() - a.radius_m - b.radius_m;
     if (gap <= allowed) {
       const double limit = allowed + closing * (last - k);
-      gap = clearance().clearance(a.prototype, at, b.prototype, bt, limit);
+      gap = clearance().clearance(a.prototype, ahead(a, k), b.prototype, ahead(b, k), limit);
       if (gap <= allowed) return true;
     }
     const double free_steps = closing > 0 ? (gap - allowed) / closing : last;

@@ -14,6 +14,7 @@ class SweptAura final : public Aura {
   double speed_of(const BodyState& body) const override;
   bool meets(const Path& foreign, const Path& own, int hops) const override;
   bool linked(const Path& a, const Path& b, int hops) const override;
+  bool may_approach(const Path& foreign, const Path& own, int hops) const override;
   bool meets_ghost(const Path& ghost, const Path& own, int hops) const override;
 
  private:
@@ -21,6 +22,8 @@ class SweptAura final : public Aura {
   Range span(double steps) const override;
   double unfallen_m(double steps) const override { return drop_m(steps); }
   bool paths_meet(const Path& a, const Path& b, int horizon_steps) const;
+  bool stay_apart(const Path& a, const Path& b, double last) const;
+  double allowed_m(const Path& a, const Path& b, double steps) const;
   double drop_m(double steps) const;             ///< distance that gravity adds in `steps`
   double last_instant(int horizon_steps) const;  ///< the last instant that paths_meet() tests, in steps from now
 };

@@ -15,12 +15,20 @@ void Vicinity::listen_to(RegionId id) {
   if (place == neighbours.end() || *place != id) neighbours.insert(place, id);
 }
 
-std::uint64_t Vicinity::within(const Vec3& p, double distance_m) const {
-  std::uint64_t bits = 0;
-  for (std::size_t i = 0; i < neighbours.size(); ++i) {
-    if (map.distance(neighbours[i], p) <= distance_m) bits |= std::uint64_t{1} << (i % 64);
+Audience Vicinity::within(const Vec3& p, double distance_m) const {
+  Audience near = kNobodyListens;
+  for (const RegionId id : neighbours) {
+    if (map.distance(id, p) <= distance_m) near |= audience_of(id);
   }
-  return bits;
+  return near;
+}
+
+Audience Vicinity::within(const Rectangle& box, double distance_m) const {
+  Audience near = kNobodyListens;
+  for (const RegionId id : neighbours) {
+    if (map.region(id).distance(box) <= distance_m) near |= audience_of(id);
+  }
+  return near;
 }
 
 bool Vicinity::deep_inside(const Vec3& p, double distance_m) const {
@@ -35,9 +43,6 @@ bool Vicinity::are_near(RegionId a, RegionId b) const {
   return map.region(a).distance(map.region(b)) <= neighbour_distance_m;
 }
 
-std::uint64_t Vicinity::bit_of(RegionId id) const {
-  const auto found = std::lower_bound(neighbours.begin(), neighbours.end(), id);
-  return found != neighbours.end() && *found == id ? std::uint64_t{1} << ((found - neighbours.begin()) % 64) : 0;
-}
+Audience Vicinity::bit_of(RegionId id) const { return is_neighbour(id) ? audience_of(id) : kNobodyListens; }
 
 }  // namespace aurasim::core

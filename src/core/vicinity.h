@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/audience.h"
 #include "core/region_map.h"
 
 namespace aurasim::core {
@@ -20,16 +21,17 @@ struct Vicinity {
   void listen_to(RegionId id);
 
   const Rectangle& home() const { return map.region(self); }
-  /// Bits of the neighbours whose territory is at most `distance_m` from `p`. With more than 64 neighbours some share a
-  /// bit.
-  std::uint64_t within(const Vec3& p, double distance_m) const;
+  /// The neighbours whose territory is at most `distance_m` from `p`.
+  Audience within(const Vec3& p, double distance_m) const;
+  /// The neighbours whose territory is at most `distance_m` from `box`.
+  Audience within(const Rectangle& box, double distance_m) const;
   /// No other region's territory is within `distance_m` of `p`.
   bool deep_inside(const Vec3& p, double distance_m) const;
   bool is_neighbour(RegionId id) const;
   /// Are two regions so near to each other that they always listen to each other?
   bool are_near(RegionId a, RegionId b) const;
   /// The bit of one neighbour; 0 for our own region and for non-neighbours.
-  std::uint64_t bit_of(RegionId id) const;
+  Audience bit_of(RegionId id) const;
 };
 
 }  // namespace aurasim::core

@@ -17,6 +17,9 @@ using core::value_of;
 
 namespace {
 
+/// An aura names its audience by one octet.
+constexpr std::size_t kMostAudiences = 256;
+
 using MaybeError = std::optional<WireError>;
 
 bool fits_into_grains(const core::Vec3& p) {
@@ -69,6 +72,24 @@ void encode_motion(const AuraBatch& batch, wire::AuraBatch& out) {
   }
 }
 
+/// Encodes each distinct audience once. Beyond kMostAudiences, an aura goes to all listeners, which is never wrong.
+void encode_audiences(const std::vector<AuraRecord>& updates, wire::AuraBatch& out) {
+  out.audience().clear();
+  std::vector<core::Audience>& distinct = out.audience_regions();
+  distinct.clear();
+  const auto for_all = [](const AuraRecord& a) { return a.audience == core::kAllListeners; };
+  if (std::ranges::all_of(updates, for_all)) return;
+  distinct.push_back(core::kAllListeners);
+  fill(out.audience(), updates, [&](const AuraRecord& a) -> std::uint8_t {
+    auto known = std::ranges::find(distinct, a.audience);
+    if (known == distinct.end()) {
+      if (distinct.size() == kMostAudiences) return 0;
+      known = distinct.insert(known, a.audience);
+    }
+    return static_cast<std::uint8_t>(known - distinct.begin());
+  });
+}
+
 /// Encodes the columns that only some auras need.
 void encode_exceptions(const AuraBatch& batch, wire::AuraBatch& out) {
   out.elsewhere_row().clear();
@@ -94,7 +115,8 @@ bool is_empty_or(std::size_t size, std::size_t rows) { return size == 0 || size 
 
 MaybeError check_column_shapes(const wire::AuraBatch& in) {
   const std::size_t rows = in.id().size();
-  if (std::max({rows, in.elsewhere_row().size(), in.unborn_row().size()}) > kMaxRows) {
+  if (std::max({rows, in.elsewhere_row().size(), in.unborn_row().size()}) > kMaxRows ||
+      in.audience_regions().size() > kMostAudiences) {
     return WireError::kTooLarge;
   }
   const bool fits =
@@ -105,6 +127,7 @@ MaybeError check_column_shapes(const wire::AuraBatch& in) {
                        {in.rotation_WB().size()}}) &&
       is_empty_or(in.p_WB().size(), 3 * rows) && is_empty_or(in.v_WB().size(), 3 * rows) &&
       in.w_WB().size() == in.v_WB().size() && is_empty_or(in.speed_m_s().size(), rows) &&
+      is_empty_or(in.audience().size(), rows) &&
       same_rows(in.elsewhere_row().size(), {{in.elsewhere_host().size()}, {in.elsewhere_stamp().size()}}) &&
       in.unborn_row().size() == in.unborn_birth().size();
   return fits ? MaybeError{} : WireError::kLength;
@@ -122,11 +145,13 @@ MaybeError check_column_values(const wire::AuraBatch& in, const Expected& expect
     return WireError::kRotation;
   }
   const auto rows = static_cast<std::uint32_t>(in.id().size());
+  const auto is_known = [&](std::uint8_t audience) { return audience < in.audience_regions().size(); };
   const auto not_later = [&](std::int64_t stamp) { return stamp <= in.stamp(); };
   const auto soon = [&](std::int64_t birth) { return birth - kMostStatesToBirth <= in.stamp(); };
   const bool in_range = none_negative(in.speed_m_s()) && all_body_ids(in.id()) && all_within(in.p_WB(), kFarthest_m) &&
                         all_within(in.v_WB(), kFastest_m_s) && all_within(in.w_WB(), kFastestSpin_rad_s) &&
                         all_within(in.speed_m_s(), kFastestReach_m_s) && all_below(in.epoch(), kMostEpochs) &&
+                        std::ranges::all_of(in.audience(), is_known) &&
                         std::ranges::all_of(in.elsewhere_stamp(), not_later) && none_negative(in.unborn_birth()) &&
                         std::ranges::all_of(in.unborn_birth(), soon) &&
                         all_below(in.prototype(), expected.prototype_count) && all_below(in.elsewhere_row(), rows) &&
@@ -152,7 +177,8 @@ AuraRecord aura_at(const wire::AuraBatch& in, std::size_t i) {
           .pose = {.p_WB = position_at(in, i), .q_WB = *unpacked_rotation(in.rotation_WB()[i])},
           .v_WB = floats_at(in.v_WB(), i),
           .w_WB = floats_at(in.w_WB(), i),
-          .speed_m_s = in.speed_m_s().empty() ? in.top_speed_m_s() : in.speed_m_s()[i]};
+          .speed_m_s = in.speed_m_s().empty() ? in.top_speed_m_s() : in.speed_m_s()[i],
+          .audience = in.audience().empty() ? core::kAllListeners : in.audience_regions()[in.audience()[i]]};
 }
 
 }  // namespace
@@ -166,6 +192,7 @@ void encode_auras(const AuraBatch& batch, wire::AuraBatch& out) {
   encode_positions(updates, out);
   fill(out.rotation_WB(), updates, [](const AuraRecord& a) { return packed(a.pose.q_WB); });
   encode_motion(batch, out);
+  encode_audiences(updates, out);
   encode_exceptions(batch, out);
 }
 

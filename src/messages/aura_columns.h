@@ -1,6 +1,6 @@
 // Encodes auras as columns of a wire::AuraBatch, in as few bytes as their use allows (docs/protocol.md): 37 bytes per
-// aura where only the pose matters, 65 with motion, 12 more for a body that others push. Positions, rotations and
-// velocities are rounded (core/aura_precision.h).
+// aura where only the pose matters, 65 with motion, 1 more where not every aura is for every listener. Positions,
+// rotations and velocities are rounded (core/aura_precision.h).
 #pragma once
 
 #include <optional>

@@ -107,6 +107,31 @@ TEST_F(ANeighbour, AFullBatchForgetsWhatWasBefore) {
   EXPECT_THAT(known(), ElementsAre(2, 3));
 }
 
+AuraRecord aura_for(std::uint64_t id, Audience audience) {
+  AuraRecord record = aura(id);
+  record.audience = audience;
+  return record;
+}
+
+TEST_F(ANeighbour, AurasForOthersAreNotKept) {
+  publish(0, {aura_for(1, audience_of(region(0))), aura_for(2, audience_of(region(2))), aura_for(3, kAllListeners)});
+  neighbour.apply_until(0);
+  EXPECT_THAT(known(), ElementsAre(1, 3));
+  publish(1, {aura_for(4, audience_of(region(2))), aura_for(5, kAllListeners)}, {}, true);
+  neighbour.apply_until(1);
+  EXPECT_THAT(known(), ElementsAre(5)) << "a full batch, too, is read for what is ours";
+}
+
+TEST_F(ANeighbour, AnAuraThatIsNoLongerForUsIsForgotten) {
+  publish(0, {aura(1), aura(2), aura(3)});
+  publish(1, {aura_for(2, audience_of(region(2)))});
+  neighbour.apply_until(1);
+  EXPECT_THAT(known(), ElementsAre(1, 3));
+  publish(2, {aura_for(2, audience_of(region(0)) | audience_of(region(2)))});
+  neighbour.apply_until(2);
+  EXPECT_THAT(known(), ElementsAre(1, 2, 3));
+}
+
 TEST_F(ANeighbour, TellsItsTopSpeedRadiusAndViolationsOfTheBatchInEffect) {
   AuraBatch b = batch(1, 0);
   b.top_speed_m_s = 12;

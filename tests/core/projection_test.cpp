@@ -165,6 +165,55 @@ TEST_P(ProjectionTest, ABodyWhereThreeBricksMeetIsSeenByBothOthers) {
   EXPECT_THAT(known_to(RegionId{2}), ElementsAre(kBody));
 }
 
+constexpr RegionId kMiddle{1};
+constexpr RegionId kRight{2};
+
+TEST_P(ProjectionTest, ABodyNearOneNeighbourIsNotTheOthersBusiness) {
+  make_world(RegionMap::columns(3, 100));
+  place_at(BodyId{1}, Vec3(-49, 0, 0));
+  place_at(BodyId{2}, Vec3(49, 0, 0));
+  world->start();
+  world->run_steps(k());
+  ASSERT_EQ(world->host(BodyId{1}), kMiddle);
+  EXPECT_EQ(update_of(BodyId{1}, kMiddle)->audience, audience_of(kWest));
+  EXPECT_EQ(update_of(BodyId{2}, kMiddle)->audience, audience_of(kRight));
+  EXPECT_THAT(known_to(kWest), ElementsAre(BodyId{1}));
+  EXPECT_THAT(known_to(kRight), ElementsAre(BodyId{2}));
+}
+
+TEST_P(ProjectionTest, ABodyOutsideItsRegionIsKnownToAllListeners) {
+  make_world(RegionMap::columns(3, 100));
+  place_flying(kBody, Vec3(-50.6, 0, 0), Vec3(12, 0, 0));
+  world->start();
+  while (world->protocol(kWest).projection().find(kBody)->phase != Phase::kBoundaryTraversed) world->step();
+  EXPECT_EQ(update_of(kBody, kWest)->audience, kAllListeners);
+  world->run_steps(k());
+  EXPECT_TRUE(known_to(kRight).contains(kBody)) << "it may host bodies over the middle region, too";
+}
+
+TEST_P(ProjectionTest, ASleepingBodyIsPublishedAgainForARegionWhoseBodyComesNear) {
+  make_world(RegionMap::columns(3, 100));
+  place_at(BodyId{3}, Vec3(0, 0, 0));  // at home in the middle
+  world->start();
+  const double zone_m = world->protocol(kMiddle).aura().zone(rules.top_speed_m_s, 2, rules.top_speed_m_s, 0.5);
+  world.reset();
+  make_world(RegionMap::columns(3, 100));
+  const double x = 50 - 0.5 - zone_m - 0.1;  // a little too far from the border
+  place_at(kBody, Vec3(x, 0, 0));
+  place_flying(BodyId{8}, Vec3(73.5, 0, 0), Vec3(-12, 0, 0));
+  world->start();
+  world->set_awake(kBody, false);
+  world->run_steps(3);
+  EXPECT_FALSE(update_of(kBody, kMiddle));
+  while (world->now() < kSteps - 1 && !update_of(kBody, kMiddle)) world->step();
+  ASSERT_TRUE(update_of(kBody, kMiddle));
+  EXPECT_EQ(update_of(kBody, kMiddle)->audience, audience_of(kRight));
+  EXPECT_GT(std::abs(50 - x) - 0.5, zone_m) << "announced because of the other body, not of the border";
+  world->run_steps(k());
+  EXPECT_TRUE(known_to(kRight).contains(kBody));
+  EXPECT_FALSE(known_to(kWest).contains(kBody));
+}
+
 TEST_P(ProjectionTest, ABodyGoesHomeAfterAnIslandOf2KPlus1Steps) {
   make_world(RegionMap::columns(2, 100));
   place_flying(kBody, Vec3(-2.01, 0, 0), Vec3(6, 0, 0));

@@ -90,6 +90,35 @@ TEST_F(ProtocolTest, AnArrivalWithAHigherEpochReplacesTheBodyHere) {
   EXPECT_THAT(changes.let_go, ElementsAre(body(1)));
 }
 
+/// Otherwise the node with the lower epoch might never receive the other's aura, and keep its copy.
+TEST_F(ProtocolTest, ABodyThatAnotherNodeHostsTooIsAnnouncedToAll) {
+  host(1, Vec3(-80, 0, 0)).epoch = 1;
+  start(0);
+  EXPECT_THAT(protocol->outbox().aura.updates, IsEmpty()) << "far from the border";
+  receive_batch_of_1({foreign(1, Vec3(-80, 0, 0))});
+  receive_next();
+  observe();
+  ASSERT_EQ(protocol->outbox().aura.updates.size(), 1u);
+  EXPECT_EQ(protocol->outbox().aura.updates[0].audience, kAllListeners);
+}
+
+TEST_F(ProtocolTest, WhereStatesAreCheckedABodyThatFliesAwayFromTheBorderIsNotAnnounced) {
+  const auto announced = [this](bool checked) {
+    snapshot.bodies.clear();
+    now = 0;
+    settings.aura.redo = checked;
+    host(1, Vec3(-3.2, 0, 0), Vec3(20, 0, 0));
+    host(2, Vec3(-3.2, 30, 0), Vec3(-20, 0, 0));
+    start(0);
+    pass_step();
+    std::vector<BodyId> ids;
+    for (const AuraRecord& update : protocol->outbox().aura.updates) ids.push_back(update.id);
+    return ids;
+  };
+  EXPECT_THAT(announced(true), ElementsAre(body(1)));
+  EXPECT_THAT(announced(false), ElementsAre(body(1), body(2)));
+}
+
 TEST_F(ProtocolTest, ABodyThatAnotherNodeOwnsUnderAHigherEpochIsLetGo) {
   host(1, Vec3(-50, 0, 0)).epoch = 2;
   host(2, Vec3(-50, 9, 0)).epoch = 2;

@@ -92,7 +92,7 @@ TEST_F(TheCheck, FindsATouchInTheStateAfterTheOneInWhichTheyAreThatNear) {
 TEST_F(TheCheck, FindsATouchWithABodyOfOursThatWasNotAnnounced) {
   ours_at_ = {-8, 0, 0};
   look(0);
-  EXPECT_FALSE(matching_.must_be_announced(0));
+  EXPECT_EQ(matching_.audience(0), kNobodyListens);
   publish(0, {body(2, 0, {-6.99, 0, 0})});
   look(1);
   publish(1, {body(2, 1, {-6.99, 0, 0})});

@@ -149,7 +149,33 @@ TEST(AuraCodec, SpeedsAreRoundedUp) {
   }
 }
 
-std::size_t bytes_per_update(bool moving, bool one_speed) {
+/// Only so many audiences have a number. What has none goes to all listeners.
+TEST(AuraCodec, AudiencesBeyondThe255thGoToAllListeners) {
+  core::AuraBatch batch = batch_of(400);
+  for (std::size_t i = 0; i < batch.updates.size(); ++i) batch.updates[i].audience = i + 1;
+  const auto decoded = decode(encoded(batch), expected());
+  ASSERT_TRUE(std::holds_alternative<core::AuraBatch>(decoded));
+  for (std::size_t i = 0; i < batch.updates.size(); ++i) {
+    const core::Audience got = std::get<core::AuraBatch>(decoded).updates[i].audience;
+    EXPECT_EQ(got, i < 255 ? core::Audience{i + 1} : core::kAllListeners) << i;
+  }
+}
+
+TEST(AuraCodec, AudiencesThatMakeNoSenseAreRefused) {
+  const auto refused = [](auto&& spoil) {
+    wire::AuraBatch wrong = encoded(batch_of(5));
+    spoil(wrong);
+    const auto decoded = decode(wrong, expected());
+    return std::holds_alternative<WireError>(decoded) ? std::optional(std::get<WireError>(decoded)) : std::nullopt;
+  };
+  EXPECT_EQ(refused([](auto& w) { w.audience()[3] = static_cast<std::uint8_t>(w.audience_regions().size()); }),
+            WireError::kRange);
+  EXPECT_EQ(refused([](auto& w) { w.audience().pop_back(); }), WireError::kLength);
+  EXPECT_EQ(refused([](auto& w) { w.audience_regions().clear(); }), WireError::kRange);
+  EXPECT_EQ(refused([](auto& w) { w.audience_regions().resize(257); }), WireError::kTooLarge);
+}
+
+std::size_t bytes_per_update(bool moving, bool one_speed, bool for_all = true) {
   const auto size = [&](std::size_t updates) {
     core::AuraBatch batch;
     batch.top_speed_m_s = 32;
@@ -160,6 +186,7 @@ std::size_t bytes_per_update(bool moving, bool one_speed) {
       aura.birth = 0;
       if (!moving) aura.v_WB = aura.w_WB = core::Vec3::Zero();
       if (one_speed) aura.speed_m_s = 32;
+      aura.audience = for_all ? core::kAllListeners : core::audience_of(core::RegionId{2});
     }
     return WireBytes().of(batch).size();
   };
@@ -170,6 +197,7 @@ std::size_t bytes_per_update(bool moving, bool one_speed) {
 TEST(AuraCodec, AnUpdateTakesFewBytes) {
   EXPECT_EQ(bytes_per_update(false, true), 37U) << "as with tight and thesis auras; 40 are allowed";
   EXPECT_EQ(bytes_per_update(true, false), 65U) << "as with swept auras; 80 are allowed";
+  EXPECT_EQ(bytes_per_update(true, false, false), 66U) << "one more where not all are for all";
 }
 
 /// The first messages of a process, made on several threads at once.

@@ -29,6 +29,7 @@ inline core::AuraRecord aura_of(std::uint64_t id) {
   aura.v_WB = core::Vec3(1 / 3.0, -0.0, x);
   aura.w_WB = core::Vec3(-x, 5e-324, 2.5);
   aura.speed_m_s = 0.1 + x;
+  aura.audience = id % 3 == 0 ? core::kAllListeners : std::uint64_t{1} << (id % 64);
   return aura;
 }
 
@@ -174,7 +175,7 @@ inline bool same(const core::AuraRecord& a, const core::AuraRecord& b) {
   return a.id == b.id && a.epoch == b.epoch && a.host == b.host && a.prototype == b.prototype && a.flags == b.flags &&
          a.stamp == b.stamp && birth_of(a) == birth_of(b) && off.cwiseAbs().maxCoeff() <= core::kPositionGrain_m / 2 &&
          a.pose.q_WB.angularDistance(b.pose.q_WB) <= core::kRotationError_rad && same_as_float(a.v_WB, b.v_WB) &&
-         same_as_float(a.w_WB, b.w_WB) && speed_off <= 2e-7 * a.speed_m_s;
+         same_as_float(a.w_WB, b.w_WB) && speed_off <= 2e-7 * a.speed_m_s && a.audience == b.audience;
 }
 
 inline bool same(const core::AuraBatch& a, const core::AuraBatch& b) {
