@@ -1,6 +1,6 @@
-// Words of nodes while the run stands in a state (docs/design.md, "A state in which the run stands"). Usually a state is
-// checked when later states have brought all messages about it. While the run stands there are no later states, so the
-// nodes say by words what is missing. Each word goes to all neighbours:
+// Words of nodes while the run stands in a state (docs/design.md, "A state in which the run stands"). Usually a state
+// is checked when later states have brought all messages about it. While the run stands there are no later states, so
+// the nodes say by words what is missing. Each word goes to all neighbours:
 //   1: the states of bodies that have been handed over to the sender and join it later
 //   2: the sender has checked the state, with word 1 of all its neighbours, and no pair has touched on two nodes
 //   k: all nodes up to k - 2 hops from the sender have said word 2
