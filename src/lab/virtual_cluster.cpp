@@ -82,7 +82,23 @@ double VirtualCluster::due_s(const Member& member) const {
 
 VirtualCluster::Event VirtualCluster::next() {
   if (const std::optional<Event> event = try_next()) return *event;
-  throw std::logic_error("every node of the cluster waits for a message that nobody sends");
+  throw std::logic_error("every node of the cluster waits for a message that nobody sends:" + who_waits());
+}
+
+/// What each live node waits for.
+std::string VirtualCluster::who_waits() const {
+  std::string text;
+  for (const Member& member : members_) {
+    if (!member.is_alive) continue;
+    const core::Step next = member.node->current_step() + 1;
+    text += " region " + std::to_string(core::value_of(member.node->region())) + " for what state " +
+            std::to_string(next) + " needs of";
+    for (const core::RegionId region : member.node->protocol().missing(next)) {
+      text += " " + std::to_string(core::value_of(region));
+    }
+    text += ";";
+  }
+  return text;
 }
 
 std::optional<VirtualCluster::Event> VirtualCluster::try_next() {
@@ -97,11 +113,14 @@ std::optional<VirtualCluster::Event> VirtualCluster::try_next() {
       chosen = &member;
     }
     if (!chosen) return std::nullopt;
+    // A message may arrive in the very moment in which a node computes.
+    const bool something_arrives = network_.next_arrival_s() <= event_s;
     network_.advance_to(std::max(event_s, network_.now_s()));
-    if (chosen->waiting) {
+    const bool was_waiting = chosen->waiting;
+    if (was_waiting || something_arrives) {
       for (Member& member : members_) member.waiting = false;
-      continue;
     }
+    if (was_waiting) continue;
     if (!chosen->node->ready()) {
       chosen->waiting = true;
       continue;

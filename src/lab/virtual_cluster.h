@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/region_map.h"
@@ -121,6 +122,7 @@ class VirtualCluster {
   Member& member(core::RegionId region) { return members_[core::value_of(region)]; }
 
   bool holds(const Member& member) const;
+  std::string who_waits() const;
   bool all_stand();
   double due_s(const Member& member) const;
   void compute(Member& member, double at_s);
