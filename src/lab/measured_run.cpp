@@ -17,6 +17,7 @@ ClusterRules cluster_rules(const Case& c, const RunRules& rules) {
   cluster.aura.lookahead = rules.lookahead;
   cluster.aura.uncertainty = c.uncertainty;
   cluster.aura.gravity = c.scene.gravity;
+  cluster.aura.redo = rules.sync == core::SyncMode::kDeterministic;  // as in a real run
   cluster.sync = rules.sync;
   cluster.physics.solver = rules.solver;
   cluster.physics.solver_iterations = rules.iterations;
@@ -35,16 +36,25 @@ class Meter {
     sums_.assign(c.metrics.size(), 0);
   }
 
-  void see(core::Step step, std::span<const core::BodyRecord> hosted, std::span<const core::BodyRecord> departed,
-           std::size_t nodes) {
-    if (step > steps_) return;
-    Parts& parts = waiting_[step];
-    parts.bodies.insert(parts.bodies.end(), hosted.begin(), hosted.end());
-    parts.bodies.insert(parts.bodies.end(), departed.begin(), departed.end());
-    if (++parts.nodes < nodes) return;
-    std::sort(parts.bodies.begin(), parts.bodies.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
-    if (parts.bodies.size() == case_.scene.bodies.size()) measure(step, parts.bodies);
-    waiting_.erase(step);
+  /// Takes in a region's bodies of a state. After a redo it replaces what it took in before.
+  void see(core::Step step, core::RegionId region, std::span<const core::BodyRecord> hosted,
+           std::span<const core::BodyRecord> departed) {
+    if (step > steps_ || step <= measured_until_) return;
+    std::vector<core::BodyRecord>& bodies = waiting_[step][region];
+    bodies.assign(hosted.begin(), hosted.end());
+    bodies.insert(bodies.end(), departed.begin(), departed.end());
+  }
+
+  /// Measures the states up to `confirmed`, which no redo can change any more.
+  void measure_until(core::Step confirmed) {
+    for (; !waiting_.empty() && waiting_.begin()->first <= confirmed; waiting_.erase(waiting_.begin())) {
+      const auto& [step, parts] = *waiting_.begin();
+      std::vector<core::BodyRecord> bodies;
+      for (const auto& [region, part] : parts) bodies.insert(bodies.end(), part.begin(), part.end());
+      std::ranges::sort(bodies, {}, &core::BodyRecord::id);
+      if (bodies.size() == case_.scene.bodies.size()) measure(step, bodies);
+      measured_until_ = step;
+    }
   }
 
   std::vector<double> errors() const {
@@ -56,11 +66,6 @@ class Meter {
   }
 
  private:
-  struct Parts {
-    std::vector<core::BodyRecord> bodies;
-    std::size_t nodes = 0;
-  };
-
   void measure(core::Step step, std::span<const core::BodyRecord> bodies) {
     const Moment now{static_cast<double>(step) * step_s_, substep_s_, bodies};
     ++measured_;
@@ -82,8 +87,9 @@ class Meter {
   double substep_s_;
   core::Step steps_;
   int measured_ = 0;
+  core::Step measured_until_ = -1;
   std::vector<double> sums_;
-  std::map<core::Step, Parts> waiting_;
+  std::map<core::Step, std::map<core::RegionId, std::vector<core::BodyRecord>>> waiting_;
 };
 
 }  // namespace
@@ -108,17 +114,23 @@ MeasuredRun run_case(const Case& c, const RunRules& rules, const core::RegionMap
   VirtualCluster cluster(c.scene, map, cluster_rules(c, rules));
   Meter meter(c, rules, run.steps);
   std::vector<double> cpu_s(cluster.size(), 0);
-  while (cluster.slowest() < run.steps + more) {
+  const auto note = [&run](std::span<const node::StepReport> reports) {
+    for (const node::StepReport& report : reports) {
+      for (const node::HashPart& part : report.hash) {
+        if (part.step <= run.steps) run.hash[static_cast<std::size_t>(part.step)] += part.sum;
+      }
+      run.hand_offs += report.departures.size();
+    }
+  };
+  while (cluster.slowest() < run.steps + more || cluster.confirmed() < run.steps) {
     const double before = thread_time_s();
     const VirtualCluster::Event event = cluster.next();
     cpu_s[core::value_of(event.region)] += thread_time_s() - before;
-    for (const node::HashPart& part : event.report->hash) {
-      if (part.step <= run.steps) run.hash[static_cast<std::size_t>(part.step)] += part.sum;
-    }
-    run.hand_offs += event.report->departures.size();
-    meter.see(event.report->step, cluster.records(core::value_of(event.region)), event.report->departed,
-              cluster.size());
+    note(cluster.node(core::value_of(event.region)).confirmed());
+    meter.see(event.report->step, event.region, cluster.records(core::value_of(event.region)), event.report->departed);
+    meter.measure_until(std::min(cluster.confirmed(), cluster.slowest()));
   }
+  for (std::size_t r = 0; r < cluster.size(); ++r) note(cluster.node(r).finish(run.steps + more));
   run.errors = meter.errors();
   run.cpu_us_per_step = 1e6 * *std::max_element(cpu_s.begin(), cpu_s.end()) / static_cast<double>(run.steps + more);
   run.violations = cluster.violations();
