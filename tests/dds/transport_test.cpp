@@ -206,7 +206,7 @@ class RawAuras final : public wire::AuraBatchPubSubType {
       return false;
     }
     if (static_cast<wire::AuraBatch*>(data)->violations() == 1) {
-      constexpr std::size_t kFullAt = 4 + 32;  // the boolean; 7 is neither true nor false and makes fastcdr throw
+      constexpr std::size_t kFullAt = 4 + 40;  // the boolean; 7 is neither true nor false and makes fastcdr throw
       payload->data[kFullAt] = 7;
     }
     return true;
