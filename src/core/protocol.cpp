@@ -34,7 +34,7 @@ Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const
       listening_(vicinity_, intake_, settings.aura.lookahead, settings.start, settings.related),
       introducer_(*aura_, vicinity_),
       check_(*aura_, vicinity_, settings.start),
-      standing_(hops_across_) {}
+      standing_(hops_across_, settings.aura.lookahead) {}
 
 Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const ClearanceQuery& clearance,
                    Continuation continuation)
@@ -209,7 +209,9 @@ const Outbox* Protocol::next_word() {
 
 void Protocol::check_as_it_stands() {
   for (const Neighbour& neighbour : intake_.neighbours()) {
-    if (neighbour.alive()) check_.take_ahead(neighbour, *neighbour.word(standing_.state(), 1));
+    if (!neighbour.alive()) continue;
+    const AuraBatch* const word = neighbour.word(standing_.state(), 1);
+    check_.take_ahead(neighbour, standing_.state(), word != nullptr ? word->past : std::span<const AuraRecord>());
   }
   check_.look_at_all(standing_.state());
   for (const Alarm& alarm : check_.found()) alarms_.raise(alarm.step, alarm.a, alarm.b);

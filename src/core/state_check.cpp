@@ -89,10 +89,10 @@ void StateCheck::take_made_up(const BodyState& body, Step step, std::uint32_t nt
       {body.id, kFirstLonely + nth, path_of(body, step, aura_.clearance()), body.birth <= step});
 }
 
-void StateCheck::take_ahead(const Neighbour& neighbour, const AuraBatch& word) {
+void StateCheck::take_ahead(const Neighbour& neighbour, Step now, std::span<const AuraRecord> to_come) {
   Neighbour ahead = neighbour;
-  ahead.apply_until(word.stamp, [this](const Neighbour& then) { take(then); });
-  for (const AuraRecord& aura : word.past) add(aura, aura.stamp, value_of(neighbour.id()));
+  ahead.apply_until(now, [this](const Neighbour& then) { take(then); });
+  for (const AuraRecord& aura : to_come) add(aura, aura.stamp, value_of(neighbour.id()));
 }
 
 void StateCheck::look_at_all(Step now) {

@@ -34,8 +34,8 @@ class StateCheck {
   void take_made_up(const BodyState& body, Step step, std::uint32_t nth);
 
   /// Adds what a neighbour has published about states up to `now`, in which the run stands, and has not taken effect
-  /// yet. `word`: its first word in this state.
-  void take_ahead(const Neighbour& neighbour, const AuraBatch& word);
+  /// yet. `to_come`: states of bodies that join the neighbour later.
+  void take_ahead(const Neighbour& neighbour, Step now, std::span<const AuraRecord> to_come);
   /// Checks all states up to `now`, in which the run stands. Call after take_ahead() for each live neighbour.
   void look_at_all(Step now);
   /// Checks all states for which everything has been received, when state `now` is complete.
