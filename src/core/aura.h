@@ -40,6 +40,10 @@ struct AuraRules {
   int looks() const { return looks_once ? 1 : substeps; }
   /// Does a look for contacts also find those that begin before the next look (physics/soft/ahead.h)?
   bool looks_ahead() const { return looks_once && sweeps; }
+  /// Do clusters look ahead for pulls that chain through further regions? Where states are checked such a pull is left
+  /// to a redo: each further hop lets links reach farther, and dense worlds come to be one cluster
+  /// (docs/decisions/0033-no-pushes.md).
+  bool pulls_chain() const { return !redo; }
   /// At how many instants of each step of two paths an aura tests whether the bodies touch.
   int instants() const { return looks_ahead() ? 4 : looks(); }
 };

@@ -10,13 +10,8 @@
 namespace aurasim::core {
 namespace {
 
-/// Most hops that clusters look ahead where states are checked. A pull that chains through a third region is left to a
-/// redo: each further hop lets links reach farther, and dense worlds come to be one cluster
-/// (docs/decisions/0033-no-pushes.md).
-constexpr int kMostHopsWhereChecked = 1;
-
 int hops_of(std::uint64_t regions, const AuraRules& rules) {
-  return std::clamp(std::popcount(regions), 1, rules.redo ? kMostHopsWhereChecked : horizon::kMostHops);
+  return std::clamp(std::popcount(regions), 1, rules.pulls_chain() ? horizon::kMostHops : 1);
 }
 
 }  // namespace

@@ -173,11 +173,16 @@ void Protocol::check(const Snapshot& snapshot) {
 }
 
 void Protocol::note_made_up(Step step, std::uint32_t nth, std::span<const BodyRecord> bodies) {
-  if (!aura_->rules().redo || step <= settings_.start) return;
+  if (aura_->rules().redo && step > settings_.start) note_lonely(step, nth, bodies, past_);
+}
+
+/// Gives the check a state that bodies made up alone, and adds it to the `past` of a batch, for others' checks.
+void Protocol::note_lonely(Step step, std::uint32_t nth, std::span<const BodyRecord> bodies,
+                           std::vector<AuraRecord>& past) {
   for (const BodyRecord& record : bodies) {
     const BodyState body = state_of(record);
     check_.take_made_up(body, step, nth);
-    past_.push_back(aura_record(body, vicinity_.self, step));
+    past.push_back(aura_record(body, vicinity_.self, step));
   }
 }
 
@@ -190,11 +195,7 @@ void Protocol::begin_to_stand() {
 }
 
 void Protocol::note_to_come(Step step, std::uint32_t nth, std::span<const BodyRecord> bodies) {
-  for (const BodyRecord& record : bodies) {
-    const BodyState body = state_of(record);
-    check_.take_made_up(body, step, nth);
-    word_.aura.past.push_back(aura_record(body, vicinity_.self, step));
-  }
+  note_lonely(step, nth, bodies, word_.aura.past);
 }
 
 const Outbox* Protocol::next_word() {

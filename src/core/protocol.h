@@ -196,6 +196,7 @@ class Protocol {
   void receive_violations();
   void check(const Snapshot& snapshot);
   void check_as_it_stands();
+  void note_lonely(Step step, std::uint32_t nth, std::span<const BodyRecord> bodies, std::vector<AuraRecord>& past);
 
   ProtocolSettings settings_;
   Vicinity vicinity_;

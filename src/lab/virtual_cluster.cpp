@@ -85,7 +85,7 @@ VirtualCluster::Event VirtualCluster::next() {
   throw std::logic_error("every node of the cluster waits for a message that nobody sends:" + who_waits());
 }
 
-/// What each live node waits for.
+/// Text that names each live node and the regions whose messages it waits for.
 std::string VirtualCluster::who_waits() const {
   std::string text;
   for (const Member& member : members_) {

@@ -11,7 +11,7 @@
 namespace aurasim::launch {
 namespace {
 
-/// What redos took; empty if there were none.
+/// The share of the computing time that redos took, as text; empty if there were none.
 std::string cost_of_redos(const records::Accounts& accounts) {
   if (accounts.redos == 0) return {};
   return fmt::format("; {} redos took {:.1f} % of the computing time", accounts.redos, 100 * accounts.redo_share);

@@ -1,12 +1,11 @@
-// What a node has composed of states that may still be computed again. It is given out once its state is certain
+// Messages to observers about states that may still be computed again. A message is given out once its state is certain
 // (node::Node::shown_step), and dropped if the run goes back to before the state. So nobody sees a state that does not
 // count.
 #pragma once
 
-#include <algorithm>
-#include <deque>
 #include <functional>
 #include <utility>
+#include <vector>
 
 #include "core/ids.h"
 
@@ -18,14 +17,10 @@ class HeldBack {
   void add(core::Step step, std::function<void()> give) { held_.push_back({step, std::move(give)}); }
   /// Gives out what is held of states up to `shown`, in the order in which it was added.
   void give_out(core::Step shown) {
-    std::deque<Held> held = std::exchange(held_, {});
-    for (Held& one : held) {
-      if (one.step <= shown) {
-        one.give();
-      } else {
-        held_.push_back(std::move(one));
-      }
+    for (Held& one : held_) {
+      if (one.step <= shown) one.give();
     }
+    std::erase_if(held_, [shown](const Held& one) { return one.step <= shown; });
   }
   /// To be called when the run goes back to state `step`. Later states are computed again.
   void put_back(core::Step step) {
@@ -38,7 +33,7 @@ class HeldBack {
     core::Step step = 0;
     std::function<void()> give;
   };
-  std::deque<Held> held_;
+  std::vector<Held> held_;
 };
 
 }  // namespace aurasim::process

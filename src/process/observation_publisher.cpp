@@ -62,7 +62,7 @@ void ObservationPublisher::hold_present_state(node::Node& node) {
     const State& last = served.published.state;
     const bool has_it = last.arrivals == now.arrivals && last.generation == now.generation && last.step >= step;
     if (has_it || !served.pace.is_for(step, asked.interest->every)) continue;
-    const auto give = [this, key = asked.key, now, observation = compose(node, *asked.interest)]() mutable {
+    auto give = [this, key = asked.key, now, observation = compose(node, *asked.interest)]() mutable {
       ObserverPace& pace = served_[key].pace;
       if (publish(key, now, observation)) {
         pace.note_sent();
@@ -70,7 +70,7 @@ void ObservationPublisher::hold_present_state(node::Node& node) {
         pace.note_too_slow();
       }
     };
-    held_.add(step, give);
+    held_.add(step, std::move(give));
   }
 }
 

@@ -36,6 +36,19 @@ void for_each_body_of(node::Node& node, const Visit& visit) {
 
 }  // namespace
 
+ClusterOptions checked_options(int seed) {
+  ClusterOptions options;
+  options.sync = core::SyncMode::kDeterministic;
+  options.seed = static_cast<std::uint64_t>(seed);
+  options.aura.top_speed_m_s = 40;
+  options.aura.redo = true;
+  options.bandwidth_B_s = lab::kUnlimited_B_s;
+  options.network.latency_s = 0.004 * (seed % 7);
+  options.network.jitter_s = 0.006 * (seed % 4);
+  options.network.keep_order = seed % 2 == 0;
+  return options;
+}
+
 CheckedRun::CheckedRun(const core::Scene& scene, const ClusterOptions& options)
     : options_(options), cluster_(scene, options.map, rules_of(options)) {}
 

@@ -45,6 +45,9 @@ struct ClusterOptions : lab::ClusterRules {
   std::vector<std::pair<core::Step, core::Action>> orders;  ///< given to region 0 in state 0, by the state they name
 };
 
+/// Options of a deterministic run that checks every state, over a coded network whose faults follow from the seed.
+ClusterOptions checked_options(int seed);
+
 struct Outcome : lab::Played {
   std::uint64_t late = 0;
   std::uint64_t missed = 0;

@@ -14,19 +14,11 @@ constexpr core::Step kListeningSteps = 150;
 
 /// Regions narrower than what bodies come across, and only those that touch listen to each other at first.
 ClusterOptions listening_options_for(int seed) {
-  ClusterOptions options;
-  options.sync = core::SyncMode::kDeterministic;
-  options.seed = static_cast<std::uint64_t>(seed);
+  ClusterOptions options = checked_options(seed);
   options.map = seed % 2 == 0 ? core::RegionMap::columns(7, 2.5) : core::RegionMap::grid(3, 4, 4, 4);
   options.neighbour_distance_m = 0;
   options.aura.lookahead = 1 + seed % 2;
   options.aura.substeps = 2;
-  options.aura.top_speed_m_s = 40;
-  options.aura.redo = true;
-  options.bandwidth_B_s = lab::kUnlimited_B_s;
-  options.network.latency_s = 0.004 * (seed % 7);
-  options.network.jitter_s = 0.006 * (seed % 4);
-  options.network.keep_order = seed % 2 == 0;
   return options;
 }
 

@@ -10,23 +10,14 @@ namespace aurasim::test {
 namespace {
 
 using core::AuraKind;
-using core::SyncMode;
 
 constexpr core::Step kRedoSteps = 150;
 
 ClusterOptions options_for(int seed) {
-  ClusterOptions options;
-  options.sync = SyncMode::kDeterministic;
-  options.seed = static_cast<std::uint64_t>(seed);
+  ClusterOptions options = checked_options(seed);
   options.map = seed % 2 == 0 ? core::RegionMap::columns(2, kCell) : core::RegionMap::grid(2, 2, kCell, kCell);
   options.aura.lookahead = 1 + seed % 3;
   options.aura.substeps = 1 << (seed % 3);
-  options.aura.top_speed_m_s = 40;
-  options.aura.redo = true;
-  options.bandwidth_B_s = lab::kUnlimited_B_s;
-  options.network.latency_s = 0.004 * (seed % 7);
-  options.network.jitter_s = 0.006 * (seed % 4);
-  options.network.keep_order = seed % 2 == 0;
   return options;
 }
 

@@ -15,25 +15,13 @@ using core::Step;
 constexpr Step kStates = 90;
 
 ClusterOptions options_for(int seed, AuraKind kind) {
-  ClusterOptions options;
-  options.sync = core::SyncMode::kDeterministic;
-  options.seed = static_cast<std::uint64_t>(seed);
+  ClusterOptions options = checked_options(seed);
   options.map = seed % 3 == 0 ? core::RegionMap::columns(4, kCell / 2) : core::RegionMap::grid(2, 2, kCell, kCell);
   if (seed % 3 == 0) options.neighbour_distance_m = 0.1;  // three hops from one end to the other
   options.aura.kind = kind;
   options.aura.lookahead = 1 + seed % 3;
   options.aura.substeps = 1 << (seed % 3);
-  options.aura.top_speed_m_s = 40;
-  options.aura.redo = true;
-  options.bandwidth_B_s = lab::kUnlimited_B_s;
-  options.network.latency_s = 0.004 * (seed % 7);
-  options.network.jitter_s = 0.006 * (seed % 4);
-  options.network.keep_order = seed % 2 == 0;
   return options;
-}
-
-core::Scene world_for(int seed) {
-  return thrown_bodies(40, 2 * kCell, 2 * kCell, 12, static_cast<std::uint64_t>(seed));
 }
 
 /// Hash of the state in which the run stands: of the bodies that are hosted and of those that join later.
@@ -63,7 +51,7 @@ struct Standing {
 
 /// Stands in every `every`th state, and compares it with the one world's.
 Standing stand_often(int seed, AuraKind kind, Step every) {
-  const core::Scene scene = world_for(seed);
+  const core::Scene scene = thrown_bodies(40, 2 * kCell, 2 * kCell, 12, static_cast<std::uint64_t>(seed));
   const ClusterOptions options = options_for(seed, kind);
   const Outcome central = run_central(scene, options, kStates);
   lab::VirtualCluster cluster(scene, options.map, options);
