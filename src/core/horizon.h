@@ -37,9 +37,11 @@ constexpr Step introduction(int lookahead) { return lookahead + 1 + 30; }
 
 // Checking, and computing again.
 
-/// A state is checked so many states later. Auras of other nodes arrive K states later. A cluster that joins late makes
-/// up its states after K, and they are published K - 1 later.
-constexpr Step check(int lookahead) { return 2 * lookahead - 1; }
+/// A cluster joins K states after its stamp, and its new host then publishes the K - 1 states that it has made up. So
+/// all that a region has to say of a state is published so many states later.
+constexpr Step made_up(int lookahead) { return lookahead - 1; }
+/// A state is checked so many states later at the latest, because messages of others arrive within K states.
+constexpr Step check(int lookahead) { return lookahead + made_up(lookahead); }
 /// Number of states from one cut to the next. A redo computes at most so many states more than it has to.
 inline constexpr Step kBetweenCuts = 5;
 /// Number of states between the older cuts, which are kept for pairs that a redo has not brought together.

@@ -104,7 +104,7 @@ void Intake::accept(Inbox& inbox) {
     if (batch.stamp > neighbour.received() + kMostStatesAhead) {
       return accept(Refusal{batch.source, batch.generation, batch.stamp, MessageKind::kAura, "far ahead", batch.redo});
     }
-    if (!neighbour.accept(std::move(batch))) ++counters_.copies;
+    if (!neighbour.accept(std::move(batch), arrived_)) ++counters_.copies;
   });
   take_all(inbox.hand_offs, settings_, [this](HandOff& hand_off) { accept(hand_off); });
   take_all(inbox.acks, settings_, [this](const HandOffAck& ack) {
@@ -184,8 +184,6 @@ bool Intake::has_all(RegionId region, Step until) const {
   return neighbour == nullptr || has_all(*neighbour, until);
 }
 
-bool Intake::announces_redo() const { return std::ranges::any_of(neighbours_, &Neighbour::announces_redo); }
-
 bool Intake::all_have_said(Step stamp, std::uint32_t number) const {
   return std::ranges::all_of(neighbours_, [&](const Neighbour& neighbour) {
     return !neighbour.alive() || neighbour.word(stamp, number) != nullptr;
@@ -209,13 +207,11 @@ std::vector<RegionId> Intake::missing(Step n) const {
 /// else as soon as they are here, but never before the state that they describe.
 Step Intake::effect_limit(Step n) const { return settings_.sync == SyncMode::kDeterministic ? needed_for(n) : n - 1; }
 
-std::vector<Adoption> Intake::receive(Step n, ViolationLog& violations, const Seen& seen, Joining joining) {
+std::vector<Adoption> Intake::receive(Step n, ViolationLog& violations, Joining joining) {
   const Step limit = effect_limit(n);
   for (Neighbour& neighbour : neighbours_) {
     if (!neighbour.alive()) continue;
-    neighbour.apply_until(limit, [&](const Neighbour& now) {
-      if (seen) seen(now);
-    });
+    neighbour.apply_until(limit);
     const Step age = n - neighbour.applied();
     if (age > settings_.lookahead && n - settings_.start > settings_.lookahead) {
       violations.add({ViolationKind::kLatency, n, neighbour.id(), {}, double(age), double(settings_.lookahead)});
@@ -258,7 +254,15 @@ std::vector<RegionId> Intake::dead_regions() const {
   return dead;
 }
 
-std::vector<Order> Intake::take_orders() { return take_from(neighbours_, &Neighbour::take_orders); }
+std::vector<Order> Intake::take_orders(const Inbox& inbox) {
+  std::vector<Order> orders = take_from(neighbours_, &Neighbour::take_orders);
+  for (const AuraBatch& batch : inbox.auras) {
+    const Neighbour* const neighbour = find(batch.source);
+    if (!neighbour || !neighbour->alive() || batch.generation != settings_.generation) continue;
+    orders.insert(orders.end(), batch.orders.begin(), batch.orders.end());
+  }
+  return orders;
+}
 
 std::vector<Alarm> Intake::take_alarms() { return take_from(neighbours_, &Neighbour::take_alarms); }
 

@@ -53,21 +53,20 @@ class Intake {
 
   /// Takes the messages out of `inbox`. Those for a later generation or redo stay there.
   void accept(Inbox& inbox);
+  /// From now on calls `arrived(neighbour)` for each batch that arrives, in order of stamp. For the check, which does
+  /// not wait until batches take effect.
+  void on_arrival(Neighbour::Arrived arrived) { arrived_ = std::move(arrived); }
 
   bool ready(Step n) const;
   std::vector<RegionId> missing(Step n) const;
 
   /// Lets messages take effect before state `n` is computed. Returns the clusters that join, in the order in which they
-  /// join. Calls `seen(neighbour)` after each batch that takes effect.
-  using Seen = std::function<void(const Neighbour&)>;
-  std::vector<Adoption> receive(Step n, ViolationLog& violations, const Seen& seen = {},
-                                Joining joining = Joining::kInTime);
+  /// join.
+  std::vector<Adoption> receive(Step n, ViolationLog& violations, Joining joining = Joining::kInTime);
   /// Has everything arrived that the neighbour has sent up to state `until`? True for a region that is no live
   /// neighbour.
   bool has_all(RegionId region, Step until) const;
 
-  /// True if a batch that has not taken effect yet has an alarm or the order of a redo.
-  bool announces_redo() const;
   /// Have all live neighbours said this word in state `stamp`?
   bool all_have_said(Step stamp, std::uint32_t number) const;
 
@@ -80,9 +79,10 @@ class Intake {
   std::span<const HandOff> to_come() const { return waiting_; }
   const IntakeCounters& counters() const { return counters_; }
 
-  /// Orders that took effect with the last receive(), by neighbour, each neighbour's in sequence.
-  std::vector<Order> take_orders();
-  /// Alarms that took effect with the last receive(), by neighbour.
+  /// Orders that have arrived since the last call, by neighbour, each neighbour's in sequence. Also those in `inbox`,
+  /// from nodes that a redo has already put back; these are returned again until this node is put back, too.
+  std::vector<Order> take_orders(const Inbox& inbox);
+  /// Alarms that have arrived since the last call, by neighbour.
   std::vector<Alarm> take_alarms();
   std::vector<Neighbour::Introduced> take_introductions();
   /// Makes `region` a neighbour, which publishes from its state `begin` on.
@@ -114,6 +114,7 @@ class Intake {
   const Vicinity& vicinity_;
   std::uint64_t map_version_;
   std::vector<Neighbour> neighbours_;
+  Neighbour::Arrived arrived_;
   Inbox early_;  ///< messages of regions that we do not listen to yet
   DepartureLedger& departures_;
   ArrivalLedger arrivals_;

@@ -56,10 +56,12 @@ std::vector<RegionId> Listening::expected() const {
 
 /// Leaves out introductions younger than K states: if messages take effect as they arrive, the other region may not
 /// have received them.
-std::vector<Listened> Listening::agreed(Step now) const {
+std::vector<Listened> Listening::agreed(Step then) const {
+  const Step introduced = then - lookahead_;
   std::vector<Listened> all = all_;
+  std::erase_if(all, [&](const Listened& who) { return who.since - horizon::introduction(lookahead_) > introduced; });
   for (const Expected& expected : expected_) {
-    if (expected.introduced <= now - lookahead_) all.push_back(expected.who);
+    if (expected.introduced <= introduced) all.push_back(expected.who);
   }
   return all;
 }

@@ -28,8 +28,9 @@ class Listening {
   std::span<const Listened> all() const { return all_; }
   /// Introduced regions that do not listen yet.
   std::vector<RegionId> expected() const;
-  /// The regions of which both sides know when state `now` is done, also those that do not listen yet.
-  std::vector<Listened> agreed(Step now) const;
+  /// The regions of which both sides know when both have done state `then`, also those that do not listen yet. The same
+  /// on both sides in every later state.
+  std::vector<Listened> agreed(Step then) const;
 
  private:
   struct Expected {

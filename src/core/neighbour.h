@@ -1,12 +1,14 @@
-// The publications of one neighbour: its aura batches in order of stamp, and the set of auras that results from them.
+// The publications of one neighbour: its aura batches in order of stamp, and the auras that result from them, as they
+// have taken effect and, for the check, as they have arrived.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
-#include "core/audience.h"
 #include "core/messages.h"
+#include "core/published_auras.h"
 
 namespace aurasim::core {
 
@@ -14,20 +16,20 @@ class Neighbour {
  public:
   /// `start`: the first state that the neighbour publishes.
   Neighbour(RegionId id, RegionId self, Step start = 0)
-      : id_(id), self_(self), received_(start - 1), applied_(start - 1) {}
+      : id_(id), self_(self), in_effect_(self), arrived_(self), received_(start - 1), applied_(start - 1) {}
 
   RegionId id() const { return id_; }
   bool alive() const { return alive_; }
 
-  /// Keeps a batch until its turn. False when it is a copy of one already seen.
-  bool accept(AuraBatch batch);
+  /// Keeps a batch until its turn. False when it is a copy of one already seen. Calls `arrived(*this)` for each batch
+  /// after which none is missing, in order of stamp, if it is not empty.
+  using Arrived = std::function<void(const Neighbour&)>;
+  bool accept(AuraBatch batch, const Arrived& arrived = {});
 
   /// Keeps a word (AuraBatch::word), and drops those of earlier states. False when it is a copy or out of date.
   bool accept_word(AuraBatch word);
   /// The word of this number that the neighbour has said in state `stamp`; null: it has not arrived.
   const AuraBatch* word(Step stamp, std::uint32_t number) const;
-  /// True if a batch that has not taken effect yet has an alarm or the order of a redo.
-  bool announces_redo() const;
 
   /// Stamp up to which every batch has arrived; start - 1 at first.
   Step received() const { return received_; }
@@ -35,20 +37,7 @@ class Neighbour {
   Step applied() const { return applied_; }
 
   /// Lets the received batches with stamp <= `last` take effect, in order.
-  /// Calls `applied(*this)` after each.
-  template <class Applied>
-  void apply_until(Step last, Applied&& applied) {
-    last = std::min(last, received_);
-    auto due_end = waiting_.begin();
-    for (; due_end != waiting_.end() && due_end->stamp <= last; ++due_end) {
-      apply(*due_end);
-      applied(*this);
-    }
-    waiting_.erase(waiting_.begin(), due_end);
-  }
-  void apply_until(Step last) {
-    apply_until(last, [](const Neighbour&) {});
-  }
+  void apply_until(Step last);
 
   /// Sequence of the neighbour's last hand-off to us with a stamp <= `stamp`, as announced by the batches received.
   std::uint64_t hand_offs_until(Step stamp) const;
@@ -56,14 +45,16 @@ class Neighbour {
   /// Marks the neighbour dead and drops all that it has published.
   void mark_dead();
 
-  /// The auras that are for us, ascending id.
-  const std::vector<AuraRecord>& auras() const { return auras_; }
-  /// AuraBatch::past of the last batch in effect: made-up states of bodies that joined the neighbour late.
-  const std::vector<AuraRecord>& past() const { return past_; }
+  /// The auras in effect that are for us, ascending id.
+  const std::vector<AuraRecord>& auras() const { return in_effect_.auras(); }
+  /// The auras that are for us after batch received(). Kept for those who accept() batches with `arrived` only.
+  const std::vector<AuraRecord>& auras_arrived() const { return arrived_.auras(); }
+  /// AuraBatch::past of batch received(): made-up states of bodies that joined the neighbour late.
+  const std::vector<AuraRecord>& past_arrived() const { return past_; }
   double top_speed_m_s() const { return top_speed_m_s_; }
   double top_radius_m() const { return top_radius_m_; }
   std::uint64_t violations() const { return violations_; }
-  /// Orders in the batches that took effect since the last call.
+  /// Orders in the batches that have arrived since the last call.
   std::vector<Order> take_orders();
   std::vector<Alarm> take_alarms();
   struct Introduced {
@@ -74,12 +65,12 @@ class Neighbour {
   std::vector<Introduced> take_introductions();
 
  private:
-  void apply(AuraBatch& batch);
-  void note_marks(const AuraBatch& batch);
-  void merge(AuraBatch& batch);
+  void note_arrival(const AuraBatch& batch);
+  void apply(const AuraBatch& batch);
 
   RegionId id_;
   RegionId self_;
+  PublishedAuras in_effect_, arrived_;
   bool alive_ = true;
   Step received_;
   Step applied_;
@@ -89,7 +80,6 @@ class Neighbour {
     std::uint64_t last_sequence;
   };
   std::vector<Mark> marks_;  ///< marks of hand-offs to us, ascending stamp; of those in effect only the last is kept
-  std::vector<AuraRecord> auras_, merged_;
   double top_speed_m_s_ = 0;
   double top_radius_m_ = 0;
   std::uint64_t violations_ = 0;

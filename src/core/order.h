@@ -87,9 +87,12 @@ struct ChangeScene {
   std::string name;
 };
 
-/// Once the order's state has been computed, all nodes go back to their cuts of state `cut` and compute on from there.
+/// All nodes go back to their cuts of state `cut` and compute on from there. Each does so when it knows of the order,
+/// has computed the order's state, and has checked its states up to the cut.
 struct Redo {
   Step cut = 0;
+  Step confirmed = 0;          ///< every node gives out what it has of states up to this one, and nothing of later ones
+  bool is_for_static = false;  ///< also because a static was not where it was ordered to be
   std::vector<TogetherPair> pairs;  ///< all pairs that share a host from then on
 };
 

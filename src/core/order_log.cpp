@@ -12,28 +12,31 @@ constexpr std::size_t kMostRecent = 4096;
 
 }  // namespace
 
-void OrderLog::add(const Order& order) {
+void OrderLog::add(const Order& order, Step now) {
   last_ = order.sequence;
   news_.push_back(order);
   to_publish_.push_back(order);
-  recent_.push_back(order);
+  recent_.push_back({order, now});
   if (recent_.size() > kMostRecent) recent_.erase(recent_.begin());
 }
 
-void OrderLog::put_back(std::uint64_t redo_sequence) {
-  std::erase_if(recent_, [=](const Order& order) { return order.sequence <= redo_sequence; });
-  to_publish_ = recent_;
+/// An order that came here in state s has reached every node by that one's state s + round, and other nodes are at most
+/// `round` states behind this one.
+void OrderLog::put_back(Step now, Step round) {
+  std::erase_if(recent_, [=](const Recent& recent) { return recent.known_since < now - 2 * round; });
+  to_publish_.clear();
+  for (const Recent& recent : recent_) to_publish_.push_back(recent.order);
 }
 
-const Order& OrderLog::announce(Order order) {
+const Order& OrderLog::announce(Order order, Step now) {
   order.sequence = last_ + 1;
-  add(order);
+  add(order, now);
   return news_.back();
 }
 
-void OrderLog::receive(std::span<const Order> orders) {
+void OrderLog::receive(std::span<const Order> orders, Step now) {
   for (const Order& order : orders) {
-    if (order.sequence == last_ + 1) add(order);
+    if (order.sequence == last_ + 1) add(order, now);
   }
 }
 

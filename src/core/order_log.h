@@ -1,6 +1,6 @@
-// Spreads orders: each node publishes every order that it receives once, in its next aura batch. Batches take effect in
-// step and in sequence. So every node has an order after as many hops as two regions can be apart, and never without
-// the one before it.
+// Spreads orders: each node publishes every order that it receives once, in its next aura batch after the order has
+// arrived. So every node has an order after as many batches as two regions are hops apart, and never without the one
+// before it.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,13 @@ class OrderLog {
  public:
   explicit OrderLog(std::uint64_t last = 0) : last_(last) {}
 
-  /// Numbers an order of our own and adds it. Returns the numbered order.
-  const Order& announce(Order order);
-  /// Call after a redo. All nodes have received the order of the redo and those before it. Later orders are published
-  /// once more, because nodes no longer accept messages from before the redo.
-  void put_back(std::uint64_t redo_sequence);
-  /// Adds orders of a neighbour's batch. Copies and orders out of sequence are ignored.
-  void receive(std::span<const Order> orders);
+  /// Numbers an order of our own and adds it, in state `now`. Returns the numbered order.
+  const Order& announce(Order order, Step now);
+  /// Call after a redo in state `now`. Orders that may not have reached all nodes are published once more, because
+  /// nodes no longer accept messages from before the redo. `round`: states within which an order reaches all nodes.
+  void put_back(Step now, Step round);
+  /// Adds orders of neighbours' batches, in state `now`. Copies and orders out of sequence are ignored.
+  void receive(std::span<const Order> orders, Step now);
 
   std::uint64_t last() const { return last_; }
   /// Orders received or announced since the last take_news(), in sequence.
@@ -32,10 +32,14 @@ class OrderLog {
   std::vector<Order> take_to_publish();
 
  private:
-  void add(const Order& order);
+  struct Recent {
+    Order order;
+    Step known_since = 0;
+  };
+  void add(const Order& order, Step now);
 
   std::uint64_t last_;
-  std::vector<Order> recent_;  ///< newest orders, which may not have reached all nodes yet
+  std::vector<Recent> recent_;  ///< newest orders, which may not have reached all nodes yet
   std::vector<Order> news_;
   std::vector<Order> to_publish_;
 };

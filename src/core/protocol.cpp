@@ -34,7 +34,9 @@ Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const
       listening_(vicinity_, intake_, settings.aura.lookahead, settings.start, settings.related),
       introducer_(*aura_, vicinity_),
       check_(*aura_, vicinity_, settings.start),
-      standing_(hops_across_, settings.aura.lookahead) {}
+      standing_(hops_across_, settings.aura.lookahead) {
+  if (settings.aura.redo) intake_.on_arrival([this](const Neighbour& neighbour) { check_.take(neighbour); });
+}
 
 Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const ClearanceQuery& clearance,
                    Continuation continuation)
@@ -51,26 +53,26 @@ Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const
 
 Continuation Protocol::continuation(const Order& redo) const {
   const Step now = outbox_.aura.stamp;
-  Continuation next{orders_, alarms_, violations_, counters_, intake_.dead_regions(), listening_.agreed(now)};
-  next.orders.put_back(redo.sequence);
+  Continuation next{orders_, alarms_, violations_, counters_, intake_.dead_regions(), listening_.agreed(redo.at_step)};
+  next.orders.put_back(now, round());
   next.alarms.put_back(std::get<Redo>(redo.action).cut);
   return next;
+}
+
+void Protocol::accept(Inbox& inbox) {
+  intake_.accept(inbox);
+  orders_.receive(intake_.take_orders(inbox), outbox_.aura.stamp);
+  alarms_.receive(intake_.take_alarms());
 }
 
 const Changes& Protocol::receive(Step n, Joining joining) {
   violations_.start_step();
   changes_.adoptions.clear();
   changes_.let_go.clear();
-  const bool checks = aura_->rules().redo;
-  const auto seen = [&](const Neighbour& neighbour) {
-    if (checks) check_.take(neighbour);
-  };
-  std::vector<Adoption> arrived = intake_.receive(n, violations_, seen, joining);
+  std::vector<Adoption> arrived = intake_.receive(n, violations_, joining);
   let_go_of_what_others_own();
   for (Adoption& adoption : arrived) take_if_newer(adoption);
   receive_violations();
-  orders_.receive(intake_.take_orders());
-  alarms_.receive(intake_.take_alarms());
   if (settings_.sync != SyncMode::kFreeRunning) listening_.receive();  // in free-running mode regions agree on no state
   changes_.orders = orders_.take_news();
   for (Order& order : changes_.orders) apply_late(order, n);
@@ -212,27 +214,33 @@ void Protocol::check_as_it_stands() {
   for (const Neighbour& neighbour : intake_.neighbours()) {
     if (!neighbour.alive()) continue;
     const AuraBatch* const word = neighbour.word(standing_.state(), 1);
-    check_.take_ahead(neighbour, standing_.state(), word != nullptr ? word->past : std::span<const AuraRecord>());
+    if (word != nullptr) check_.take_to_come(neighbour, word->past);
   }
   check_.look_at_all(standing_.state());
   for (const Alarm& alarm : check_.found()) alarms_.raise(alarm.step, alarm.a, alarm.b);
 }
 
-/// An alarm is raised when its state is checked. It travels to the lead, whose order of a redo then travels to all
-/// nodes. After a redo, alarms that still stand are published anew.
-Step Protocol::confirmed_but_for_alarms() const {
+/// The newest state whose check was over `patience` states ago. After a redo, alarms that still stand are published
+/// anew.
+Step Protocol::heard_of_all(Step patience) const {
   const Step now = outbox_.aura.stamp;
-  const Step there_and_back = 2 * round() + 2;
-  const Step confirmed = now - horizon::check(aura_->rules().lookahead) - there_and_back;
-  const bool is_first_round = settings_.redo > 0 && now < settings_.start + there_and_back;
-  return is_first_round ? std::min(confirmed, settings_.start - there_and_back) : confirmed;
+  const Step confirmed = now - horizon::check(aura_->rules().lookahead) - patience;
+  const bool is_first_round = settings_.redo > 0 && now < settings_.start + patience;
+  return is_first_round ? std::min(confirmed, settings_.start - patience) : confirmed;
 }
 
-Step Protocol::confirmed() const {
-  Step confirmed = confirmed_but_for_alarms();
+Step Protocol::before_alarms(Step confirmed) const {
   for (const Alarm& alarm : alarms_.standing()) confirmed = std::min(confirmed, alarm.step - 1);
   return confirmed;
 }
+
+/// An alarm takes at most a round to this node.
+Step Protocol::confirmed_here() const { return before_alarms(heard_of_all(round() + 1)); }
+
+/// An alarm takes at most a round to the lead, and the order of a redo at most a round from there.
+Step Protocol::confirmed_but_for_alarms() const { return heard_of_all(2 * round() + 2); }
+
+Step Protocol::confirmed() const { return before_alarms(confirmed_but_for_alarms()); }
 
 Step Protocol::earliest_agreement() const { return outbox_.aura.stamp + 1 + round(); }
 

@@ -91,8 +91,9 @@ class Protocol {
   void listen_to(std::span<const Listened> regions) { listening_.add(regions); }
   std::span<const Listened> listens_to() const { return listening_.all(); }
 
-  /// Takes the messages out of `inbox`, at any time. Those of a later generation stay there.
-  void accept(Inbox& inbox) { intake_.accept(inbox); }
+  /// Takes the messages out of `inbox`, at any time. Those of a later generation or redo stay there. Orders and alarms
+  /// count from now on.
+  void accept(Inbox& inbox);
 
   /// May state `n` be computed? In kFreeRunning always. Otherwise when every live neighbour's batch of stamp n - K has
   /// arrived, and its hand-offs up to that stamp.
@@ -108,7 +109,7 @@ class Protocol {
 
   /// Numbers an order and publishes it with the next step. receive() returns it like orders of others. Only for the
   /// lead, which numbers all orders.
-  const Order& announce(Order order) { return orders_.announce(std::move(order)); }
+  const Order& announce(Order order) { return orders_.announce(std::move(order), outbox_.aura.stamp); }
   std::uint64_t last_order() const { return orders_.last(); }
   /// Orders that receive() has not returned yet.
   std::span<const Order> orders_to_come() const { return orders_.news(); }
@@ -133,11 +134,15 @@ class Protocol {
   const Outbox* next_word();
   /// The newest state in which the run stood and which all nodes have checked, as far as this node knows; -1: none.
   Step checked_by_all() const { return checked_by_all_; }
-  /// True if the run is going to be computed again, as far as is known here: an alarm stands, or a redo is ordered.
-  bool has_news_of_redo() const { return !alarms_.standing().empty() || intake_.announces_redo(); }
 
-  /// The newest confirmed state: no alarm can question it any more. With AuraRules::redo only.
+  /// The newest state that this node has checked. With AuraRules::redo only.
+  Step checked() const { return check_.checked(); }
+  /// The newest confirmed state: no alarm can question it any more, and every other node has as good as confirmed it
+  /// (confirmed_here). With AuraRules::redo only.
   Step confirmed() const;
+  /// The newest state about which this node would have heard of an alarm. At least confirmed() of all nodes by the time
+  /// that they hear of an order given now.
+  Step confirmed_here() const;
   /// Like confirmed(), but ignores the alarms that stand now.
   Step confirmed_but_for_alarms() const;
   const AlarmLog& alarms() const { return alarms_; }
@@ -196,6 +201,8 @@ class Protocol {
   void receive_violations();
   void check(const Snapshot& snapshot);
   void check_as_it_stands();
+  Step heard_of_all(Step patience) const;
+  Step before_alarms(Step confirmed) const;
   void note_lonely(Step step, std::uint32_t nth, std::span<const BodyRecord> bodies, std::vector<AuraRecord>& past);
 
   ProtocolSettings settings_;

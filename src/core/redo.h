@@ -31,8 +31,8 @@ struct TogetherPair {
   Step until = 0;
 };
 
-/// The alarms of a run: every node publishes each alarm once, in its next batch. So all nodes have it after as many
-/// hops as two regions can be apart. The log survives a redo.
+/// The alarms of a run: every node publishes each alarm once, in its next batch after the alarm has arrived. So all
+/// nodes have it after as many batches as two regions are hops apart. The log survives a redo.
 class AlarmLog {
  public:
   /// Adds an alarm of our own; at most one for each pair between two redos.

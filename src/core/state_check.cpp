@@ -66,12 +66,12 @@ void StateCheck::add(const AuraRecord& aura, Step step, std::uint32_t world) {
 }
 
 void StateCheck::take(const Neighbour& neighbour) {
-  const Step step = neighbour.applied();
-  for (const AuraRecord& aura : neighbour.auras()) {
+  const Step step = neighbour.received();
+  for (const AuraRecord& aura : neighbour.auras_arrived()) {
     const bool sleeps = (aura.flags & kAuraAsleep) != 0 && (aura.flags & kAuraGhost) == 0;
     if (aura.stamp == step || (sleeps && aura.stamp < step)) add(aura, step, value_of(neighbour.id()));
   }
-  for (const AuraRecord& aura : neighbour.past()) add(aura, aura.stamp, value_of(neighbour.id()));
+  for (const AuraRecord& aura : neighbour.past_arrived()) add(aura, aura.stamp, value_of(neighbour.id()));
 }
 
 void StateCheck::take_own(const Snapshot& snapshot, const InterestMatching& matching) {
@@ -89,9 +89,7 @@ void StateCheck::take_made_up(const BodyState& body, Step step, std::uint32_t nt
       {body.id, kFirstLonely + nth, path_of(body, step, aura_.clearance()), body.birth <= step});
 }
 
-void StateCheck::take_ahead(const Neighbour& neighbour, Step now, std::span<const AuraRecord> to_come) {
-  Neighbour ahead = neighbour;
-  ahead.apply_until(now, [this](const Neighbour& then) { take(then); });
+void StateCheck::take_to_come(const Neighbour& neighbour, std::span<const AuraRecord> to_come) {
   for (const AuraRecord& aura : to_come) add(aura, aura.stamp, value_of(neighbour.id()));
 }
 
@@ -111,12 +109,11 @@ void StateCheck::forget() {
 
 void StateCheck::look(Step now, std::span<const Neighbour> neighbours) {
   found_.clear();
-  const int lookahead = aura_.rules().lookahead;
   Step known = now;
   for (const Neighbour& neighbour : neighbours) {
-    if (neighbour.alive()) known = std::min(known, neighbour.applied());
+    if (neighbour.alive()) known = std::min(known, neighbour.received());
   }
-  const Step last = std::min(now - horizon::check(lookahead), known - (lookahead - 1));
+  const Step last = known - horizon::made_up(aura_.rules().lookahead);
   for (; checked_ < last; ++checked_) check(checked_ + 1);
   forget();
 }

@@ -1,6 +1,7 @@
 // The check (docs/design.md, "Checked, and computed again"): was every pair of bodies that touched while a state was
-// computed in one world? A node compares its own bodies with all published foreign bodies, state by state, K states
-// late. It errs on the safe side: it may report a pair too many, none too few.
+// computed in one world? A node compares its own bodies with all published foreign bodies, state by state, as soon as
+// all that there is to know about a state has arrived. It errs on the safe side: it may report a pair too many, none
+// too few.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +25,7 @@ class StateCheck {
   /// Checks states from `start` on. Keeps references to `aura` and `vicinity`.
   StateCheck(const Aura& aura, const Vicinity& vicinity, Step start);
 
-  /// Adds what a neighbour has published about the state applied(), and about earlier ones.
+  /// Adds what a neighbour has published about the state received(), and about earlier ones.
   void take(const Neighbour& neighbour);
   /// Adds our bodies of a state, whether they were announced or not. A foreign body that left its path may have come to
   /// one that was not. The foreign one was announced, because it is outside of its region or near the border.
@@ -33,12 +34,11 @@ class StateCheck {
   /// with other bodies.
   void take_made_up(const BodyState& body, Step step, std::uint32_t nth);
 
-  /// Adds what a neighbour has published about states up to `now`, in which the run stands, and has not taken effect
-  /// yet. `to_come`: states of bodies that join the neighbour later.
-  void take_ahead(const Neighbour& neighbour, Step now, std::span<const AuraRecord> to_come);
-  /// Checks all states up to `now`, in which the run stands. Call after take_ahead() for each live neighbour.
+  /// Adds states, up to the one in which the run stands, of bodies that join the neighbour later.
+  void take_to_come(const Neighbour& neighbour, std::span<const AuraRecord> to_come);
+  /// Checks all states up to `now`, in which the run stands. Call after take_to_come() for each live neighbour.
   void look_at_all(Step now);
-  /// Checks all states for which everything has been received, when state `now` is complete.
+  /// Checks all states for which everything has arrived, when state `now` is complete.
   void look(Step now, std::span<const Neighbour> neighbours);
   /// Pairs, a < b, that the last look() or look_at_all() found, each with the state in whose computation they may have
   /// touched.

@@ -101,7 +101,7 @@ struct ToRow {
   void operator()(const core::Save& a) const { row.text = a.file; }
   void operator()(const core::Load& a) const { row.text = a.file; }
   void operator()(const core::Redo& a) const {
-    row.numbers.push_back(static_cast<double>(a.cut));
+    row.numbers = {static_cast<double>(a.cut), static_cast<double>(a.confirmed), a.is_for_static ? 1.0 : 0.0};
     for (const core::TogetherPair& pair : a.pairs) {
       const std::array<double, 3> numbers = {static_cast<double>(value_of(pair.a)),
                                              static_cast<double>(value_of(pair.b)), static_cast<double>(pair.until)};
@@ -165,10 +165,13 @@ Maybe regions_of(const Numbers& n) {
 Maybe redo_of(const Numbers& n) {
   constexpr double kMostExact = 9007199254740992.0;  // 2^53
   const auto whole = [](double x) { return x >= 0 && x < kMostExact && std::floor(x) == x; };
-  if (n.all.size() % 3 != 1 || !std::all_of(n.all.begin(), n.all.end(), whole)) return {};
+  const bool has_all = !n.all.empty() && n.all.size() % 3 == 0;
+  if (!has_all || !std::all_of(n.all.begin(), n.all.end(), whole) || n.all[2] > 1) return {};
   core::Redo action;
   action.cut = static_cast<core::Step>(n.all[0]);
-  for (std::size_t i = 1; i < n.all.size(); i += 3) {
+  action.confirmed = static_cast<core::Step>(n.all[1]);
+  action.is_for_static = n.all[2] > 0;
+  for (std::size_t i = 3; i < n.all.size(); i += 3) {
     action.pairs.push_back({BodyId{static_cast<std::uint64_t>(n.all[i])},
                             BodyId{static_cast<std::uint64_t>(n.all[i + 1])}, static_cast<core::Step>(n.all[i + 2])});
     if (!(action.pairs.back().a < action.pairs.back().b)) return {};

@@ -39,7 +39,8 @@ void Cuts::note_spawn(const core::Order& order) {
 }
 
 void Cuts::forget(core::Step confirmed, bool alarms_given_up) {
-  const core::Step needed = before(confirmed + 1, 0).step;
+  // The state after a redo's cut may be the next one to cause a redo.
+  const core::Step needed = before(before(confirmed + 1, 0).step + 1, 0).step;
   const core::Step oldest_needed = before(confirmed + 1, kOlderCuts).step;
   std::erase_if(cuts_, [&](Cut& cut) {
     const bool stays =
@@ -85,8 +86,12 @@ core::ClusterState Cuts::take_memory() {
 core::Redo Cuts::plan(std::span<const core::Alarm> alarms, std::vector<core::TogetherPair> together) {
   const core::Step first = std::ranges::min(alarms, {}, &core::Alarm::step).step;
   std::size_t farther = 0;
+  bool is_for_static = false;
   for (const core::Alarm& alarm : alarms) {
-    if (!core::is_about_a_pair(alarm)) continue;
+    if (!core::is_about_a_pair(alarm)) {
+      is_for_static = true;
+      continue;
+    }
     const core::Step until = alarm.step + core::horizon::together_after_touch(lookahead_);
     const auto known = std::ranges::find_if(together, [&](const auto& pair) { return same_pair(pair, alarm); });
     if (known == together.end()) {
@@ -100,7 +105,7 @@ core::Redo Cuts::plan(std::span<const core::Alarm> alarms, std::vector<core::Tog
   const core::Step cut = before(first, stubborn_).step;
   std::erase_if(together, [cut](const core::TogetherPair& pair) { return pair.until < cut; });
   std::ranges::sort(together, {}, [](const core::TogetherPair& pair) { return std::pair(pair.a, pair.b); });
-  return {cut, std::move(together)};
+  return {cut, 0, is_for_static, std::move(together)};
 }
 
 Cut& Cuts::back_to(core::Step step) {
@@ -134,7 +139,7 @@ void SavedStates::forget_end() {
 
 void SavedStates::take(core::Step step, const std::function<Cut()>& cut) {
   for (State& state : states_) {
-    if (state.step == step) state.cut = cut();
+    if (state.step == step && !state.is_confirmed) state.cut = cut();
   }
 }
 
@@ -154,9 +159,10 @@ void SavedStates::note_whole(const std::function<bool(core::Step)>& is_whole) {
   for (State& state : states_) state.is_whole = state.cut && is_whole(state.step);
 }
 
-void SavedStates::put_back(core::Step step) {
+void SavedStates::put_back(core::Step step, core::Step confirmed) {
   for (State& state : states_) {
-    if (state.step <= step) continue;
+    state.is_confirmed = state.is_confirmed || state.step <= confirmed;
+    if (state.step <= step || state.is_confirmed) continue;
     state.cut.reset();
     state.is_whole = false;
   }
@@ -165,7 +171,8 @@ void SavedStates::put_back(core::Step step) {
 std::vector<Cut> SavedStates::take_whole(core::Step confirmed) {
   std::vector<Cut> whole;
   std::erase_if(states_, [&](State& state) {
-    if (state.is_the_end || !state.is_whole || !state.cut || confirmed < state.step) return false;
+    if (state.is_the_end || !state.is_whole || !state.cut) return false;
+    if (confirmed < state.step && !state.is_confirmed) return false;
     whole.push_back(std::move(*state.cut));
     return true;
   });

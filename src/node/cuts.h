@@ -53,6 +53,8 @@ class Cuts {
   /// them has raised the first alarm, the redo goes back farther than the last one. Preconditions: not empty, and
   /// `alarms` is not.
   core::Redo plan(std::span<const core::Alarm> alarms, std::vector<core::TogetherPair> together);
+  /// True if the last plan() was for a pair that an earlier redo has not brought together.
+  bool is_stubborn() const { return stubborn_ > 0; }
   /// Drops the cuts after state `step` and returns the one of that state. Throws std::logic_error if there is none.
   Cut& back_to(core::Step step);
 
@@ -84,8 +86,9 @@ class SavedStates {
   void note_spawn(const core::Order& order);
   /// Notes which of the states are whole. `is_whole(step)`: every cluster that was under way in that state has arrived.
   void note_whole(const std::function<bool(core::Step)>& is_whole);
-  /// To be called when the run goes back to state `step`. Later states will be kept anew.
-  void put_back(core::Step step);
+  /// To be called when the run goes back to state `step`. Later states will be kept anew, but for those up to
+  /// `confirmed`, of which every node gives out its part as it was.
+  void put_back(core::Step step, core::Step confirmed);
   /// Takes the whole states up to `confirmed` that have been asked for.
   std::vector<Cut> take_whole(core::Step confirmed);
 
@@ -95,6 +98,7 @@ class SavedStates {
     std::optional<Cut> cut;
     bool is_whole = false;
     bool is_the_end = false;  ///< take_whole() leaves it
+    bool is_confirmed = false;
   };
   std::vector<State> states_;
 };

@@ -81,10 +81,12 @@ void Node::take_mail() {
   const Timed timed(mail_s_, setup_.clock);
   transport_->take(inbox_);
   protocol_->accept(inbox_);
+  learn_of_redos();
 }
 
 bool Node::ready() {
   take_mail();
+  order_redo();
   return redo_is_due() || protocol_->ready(current_step() + 1);
 }
 
@@ -120,10 +122,7 @@ const StepReport& Node::step() {
 /// Computes the next state, and keeps what a redo or somebody else may want of it.
 void Node::compute_and_keep() {
   // Before the clusters for the next state are taken in, because some of them left before a saved state.
-  const core::Step next = current_step() + 1;
-  saved_.note_whole([this, next](core::Step state) {
-    return next >= state + setup_.protocol.aura.lookahead && has_all_until(state);
-  });
+  saved_.note_whole(whole_by(current_step() + 1));
   compute_step();
   save_if_due();
   if (current_step() % core::horizon::kBetweenCuts == 0) take_cut();

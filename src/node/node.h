@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -192,7 +193,8 @@ class Node {
   // History (node_redo.cpp, node_cut.cpp)
   bool may_go_back() const;
   void begin_to_stand();
-  bool redo_is_due() const { return redo_ && redo_->at_step <= current_step(); }
+  void learn_of_redos();
+  bool redo_is_due() const;
   void take_cut();
   Cut cut(core::ClusterState memory = {}) const;
   void forget_cuts();
@@ -202,6 +204,9 @@ class Node {
   void release_held(core::Step until);
   void confirm_all();
   void save_if_due();
+  /// Tells of a state whether every cluster that was under way in it has arrived and joined by the time that `now` is
+  /// computed.
+  std::function<bool(core::Step)> whole_by(core::Step now) const;
   core::WorldCut part_of_world(Cut cut) const;
   void add_orders(core::WorldCut& part, core::Step after) const;
   void forget_setpoints();
@@ -247,9 +252,9 @@ class Node {
   std::optional<Beginning> beginning_;
   bool settled_ = false;
   bool is_observed_ = false;
-  std::optional<core::Order> redo_;  ///< a redo that has been ordered and is not due yet
-  bool redo_is_ordered_ = false;     ///< this node has ordered a redo that is not due yet
-  bool is_changing_ = false;         ///< this node has ordered a change of the run; an order given now would be lost
+  std::vector<core::Order> redos_;  ///< ordered and not carried out yet, in sequence
+  std::uint64_t last_redo_ = 0;     ///< sequence of the newest of redos_ so far
+  bool is_changing_ = false;        ///< this node has ordered a change of the run; an order given now would be lost
   StaticOrders statics_;
   LateWords late_words_;
   core::Epoch first_epoch_ = 0;  ///< epoch that new bodies get

@@ -15,6 +15,11 @@ void Node::save_if_due() {
   });
 }
 
+std::function<bool(core::Step)> Node::whole_by(core::Step now) const {
+  return
+      [this, now](core::Step state) { return now >= state + setup_.protocol.aura.lookahead && has_all_until(state); };
+}
+
 /// Makes a part of a saved world. It contains the orders known when the part is complete, and all that they have made.
 core::WorldCut Node::part_of_world(Cut cut) const {
   core::WorldCut part;

@@ -40,7 +40,7 @@ void Node::execute(const core::Order& order) {
   report_.orders.push_back(order);
   scene_.execute(order, current_step());
   if (std::holds_alternative<core::Redo>(order.action)) {
-    redo_ = order;
+    // learn_of_redos() has taken note of it
   } else if (std::holds_alternative<core::Save>(order.action)) {
     save(order.at_step);
   } else if (std::holds_alternative<core::Spawn>(order.action)) {

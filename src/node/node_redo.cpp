@@ -1,5 +1,7 @@
 // How a node goes back to a cut and computes again (docs/design.md, "Checked, and computed again").
 #include <algorithm>
+#include <iterator>
+#include <limits>
 #include <utility>
 
 #include "core/horizon.h"
@@ -18,8 +20,7 @@ core::Step Node::shown_step() const {
 }
 
 bool Node::is_going_back() const {
-  return may_go_back() && protocol_->computes_again() &&
-         (redo_.has_value() || redo_is_ordered_ || protocol_->has_news_of_redo());
+  return may_go_back() && protocol_->computes_again() && (!redos_.empty() || !protocol_->alarms().standing().empty());
 }
 
 bool Node::stand() {
@@ -67,37 +68,66 @@ void Node::forget_cuts() {
   if (beginning_ && cuts_.oldest() > beginning_->world.step) beginning_.reset();
 }
 
-/// Orders a redo for the standing alarms. Does nothing except on the one node that takes orders.
+/// Orders a redo for the standing alarms. Does nothing except on the one node that takes orders. Alarms about states
+/// after the last one of the run are ignored, because other nodes may have ended by now.
+///
+/// A node goes back as soon as it knows of the order. Only where an earlier redo has not brought a pair together, all
+/// wait for the state in which all know of it: they then keep what the regions between have learned of each other.
 void Node::order_redo() {
   if (!may_go_back()) return;
-  const std::span<const core::Alarm> alarms = protocol_->alarms().standing();
   if (!protocol_->intake().dead_regions().empty()) give_up_redo();
-  if (region() != core::RegionId{0} || redo_is_ordered_ || alarms.empty() || protocol_->alarms_given_up()) return;
+  if (region() != core::RegionId{0} || !redos_.empty() || protocol_->alarms_given_up()) return;
+  const core::Step last = saved_.end().value_or(std::numeric_limits<core::Step>::max());
+  std::vector<core::Alarm> alarms;
+  std::ranges::copy_if(protocol_->alarms().standing(), std::back_inserter(alarms),
+                       [last](const core::Alarm& alarm) { return alarm.step <= last; });
+  if (alarms.empty()) return;
+  core::Redo redo = cuts_.plan(alarms, setup_.protocol.together);
+  redo.confirmed = std::max(protocol_->confirmed_here(), core::Step{0});
   core::Order order;
-  order.at_step = protocol_->earliest_agreement();
-  order.action = cuts_.plan(alarms, setup_.protocol.together);
+  order.at_step = cuts_.is_stubborn() ? protocol_->earliest_agreement() : redo.cut + 1;
+  order.action = std::move(redo);
   protocol_->announce(std::move(order));
-  redo_is_ordered_ = true;
+  learn_of_redos();
 }
 
-/// Goes back to the cut that redo_ names. All nodes do so after the same state. Messages under way belong to the old
-/// redo, and their receivers drop them.
+/// Takes note of redos that have been ordered, before their orders are executed with the next state.
+void Node::learn_of_redos() {
+  for (const core::Order& order : protocol_->orders_to_come()) {
+    if (order.sequence <= last_redo_ || !std::holds_alternative<core::Redo>(order.action)) continue;
+    last_redo_ = order.sequence;
+    redos_.push_back(order);
+  }
+}
+
+/// May this node carry out the next redo? Not before it has checked all states up to the cut, because none of them is
+/// checked again.
+bool Node::redo_is_due() const {
+  if (redos_.empty() || current_step() < redos_.front().at_step) return false;
+  return protocol_->checked() >= std::get<core::Redo>(redos_.front().action).cut;
+}
+
+/// Goes back to the cut of the next redo. Messages under way belong to the time before it, and their receivers drop
+/// them.
 void Node::put_back() {
   const core::Step from = current_step();
-  const core::Order order = *redo_;
+  const core::Order order = redos_.front();
+  redos_.erase(redos_.begin());
   const auto redo = std::get<core::Redo>(order.action);
-  redo_.reset();
-  redo_is_ordered_ = false;
-  const bool is_for_static = !std::ranges::all_of(protocol_->alarms().standing(), core::is_about_a_pair);
-  if (is_for_static) statics_.note_doubt(from);
+  if (redo.is_for_static) statics_.note_doubt(from);
+  // The same on all nodes. A body's host may be another one when a state is computed again.
+  release_held(redo.confirmed);
+  saved_.note_whole(whole_by(from));
   clear_report();
-  report_.put_back_for_static = is_for_static;
+  report_.put_back_confirmed = redo.confirmed;
+  report_.put_back_for_static = redo.is_for_static;
+  cuts_.forget(redo.confirmed, false);  // so all nodes have the same cuts, which the next redo may need
   Cut& cut = cuts_.back_to(redo.cut);
   setup_.protocol.together = redo.pairs;
   setup_.protocol.start = cut.step;
   // Epochs must only grow, for observers too. `more` exceeds the number of times that any body can have changed host
-  // since.
-  const auto more = static_cast<core::Epoch>(from - cut.step + 1);
+  // since: no node is more than a round ahead of this one.
+  const auto more = static_cast<core::Epoch>(from + protocol_->round() - cut.step + 1);
   first_epoch_ += more;
   const auto raise = [&](core::ClusterState& cluster) {
     for (core::BodyRecord& body : cluster.bodies) body.epoch += more;
@@ -119,7 +149,7 @@ void Node::put_back() {
   protocol_.emplace(setup_.protocol, *map_, *clearance_, std::move(next));
   report_.put_back_from = from;
   report_.put_back_for = redo.pairs;
-  saved_.put_back(cut.step);
+  saved_.put_back(cut.step, redo.confirmed);
   put_in(cut);
   note_effects_anew();
   begin_state(Recorded::kYes);
@@ -154,8 +184,7 @@ void Node::confirm_all() {
   release_held(current_step());
   cuts_.clear();
   beginning_.reset();
-  redo_.reset();
-  redo_is_ordered_ = false;
+  redos_.clear();
 }
 
 }  // namespace aurasim::node

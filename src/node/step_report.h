@@ -100,6 +100,7 @@ struct StepReport {
   std::vector<core::Violation> violations;
   std::uint64_t violations_total = 0;            ///< since the start
   std::optional<core::Step> put_back_from;       ///< set after a redo: the run has gone back from this state to `step`
+  core::Step put_back_confirmed = 0;             ///< states up to this one count as they were before the redo
   std::vector<core::TogetherPair> put_back_for;  ///< pairs of the redo; they now come to one host in time
   bool put_back_for_static = false;              ///< the redo was, also, for a static that was elsewhere than ordered
 };

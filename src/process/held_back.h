@@ -22,8 +22,10 @@ class HeldBack {
     }
     std::erase_if(held_, [shown](const Held& one) { return one.step <= shown; });
   }
-  /// To be called when the run goes back to state `step`. Later states are computed again.
-  void put_back(core::Step step) {
+  /// To be called when the run goes back to state `step`. Later states are computed again. Those up to `confirmed` are
+  /// given out first, by all nodes, because a body may have another host afterwards.
+  void put_back(core::Step step, core::Step confirmed) {
+    give_out(confirmed);
     std::erase_if(held_, [step](const Held& one) { return one.step > step; });
   }
   void clear() { held_.clear(); }

@@ -117,9 +117,9 @@ void NodeEndpoints::publish_ros2(node::Node& node, core::Generation generation) 
   if (ros2_) ros2_->publish(node, generation, leads());
 }
 
-void NodeEndpoints::put_back(core::Step step) {
-  observers_->put_back(step);
-  if (ros2_) ros2_->put_back(step);
+void NodeEndpoints::put_back(core::Step step, core::Step confirmed) {
+  observers_->put_back(step, confirmed);
+  if (ros2_) ros2_->put_back(step, confirmed);
 }
 
 std::map<core::RegionId, node::PeerSign> NodeEndpoints::peer_signs() {

@@ -69,7 +69,7 @@ class NodeEndpoints {
   void publish_ros2(node::Node& node, core::Generation generation);
   /// To be called when the run goes back to state `step`. Observers get later states when they have been computed
   /// again.
-  void put_back(core::Step step);
+  void put_back(core::Step step, core::Step confirmed);
   /// Signs of life of all other regions, for the fence. A region whose node was never received from since this process
   /// joined DDS counts as lost.
   std::map<core::RegionId, node::PeerSign> peer_signs();

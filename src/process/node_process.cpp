@@ -205,8 +205,7 @@ void NodeProcess::compute_step() {
   changing_.take_reached_changes();
 }
 
-/// Notes a redo, which all nodes do after the same state. Observers have no state that is computed again with another
-/// result.
+/// Notes a redo. Observers have no state that is computed again with another result.
 void NodeProcess::note_redo(const node::StepReport& report) {
   const core::TogetherPair first = report.put_back_for.empty() ? core::TogetherPair{} : report.put_back_for.front();
   const std::string news = fmt::format(
@@ -220,7 +219,7 @@ void NodeProcess::note_redo(const node::StepReport& report) {
   if (report.put_back_for_static) run_.saving.look_at_doubtful(*run_.node, report.step);
   run_.note_messages_of_saves();
   run_.status.content().redos = run_.node->redos();
-  run_.endpoints.put_back(report.step);
+  run_.endpoints.put_back(report.step, report.put_back_confirmed);
   run_.record(run_.node->confirmed());
   run_.schedule.note_computed(Clock::now());
   run_.publish_running();

@@ -16,9 +16,9 @@ void ObservationPublisher::begin_generation(core::Generation generation, std::ui
   held_.clear();
 }
 
-void ObservationPublisher::put_back(core::Step step) {
+void ObservationPublisher::put_back(core::Step step, core::Step confirmed) {
+  held_.put_back(step, confirmed);
   feed_.reset();
-  held_.put_back(step);
 }
 
 /// Takes in observers' requests. False if there are none. The node sums up contacts for observers from its next step

@@ -22,7 +22,7 @@ class ObservationPublisher {
   void begin_generation(core::Generation generation, std::uint64_t map_version);
   /// To be called when the run goes back to state `step`. Later states that have not been published yet are published
   /// when they have been computed again.
-  void put_back(core::Step step);
+  void put_back(core::Step step, core::Step confirmed);
   /// To be called after the first state and after every step.
   void after_step(node::Node& node, const node::StepReport& report);
   /// Publishes the state in which the run is paused to observers that have not received it. May be called as often as

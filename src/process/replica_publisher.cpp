@@ -30,12 +30,12 @@ void ReplicaPublisher::begin_generation(core::Generation generation) {
   observations_.begin_generation(generation, map_version_);
 }
 
-void ReplicaPublisher::put_back(core::Step step) {
+void ReplicaPublisher::put_back(core::Step step, core::Step confirmed) {
+  held_.put_back(step, confirmed);
   if (feed_) feed_->forget();
   last_key_frame_ = {};
-  held_.put_back(step);
   composed_ = std::max(published_, std::min(composed_, step));
-  observations_.put_back(step);
+  observations_.put_back(step, confirmed);
 }
 
 void ReplicaPublisher::after_step(node::Node& node, const node::StepReport& report) {

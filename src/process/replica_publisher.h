@@ -21,7 +21,7 @@ class ReplicaPublisher {
   void begin_generation(core::Generation generation);
   /// To be called when the run goes back to state `step`. Later states that have not been published yet are published
   /// when they have been computed again, the first of them as a key frame.
-  void put_back(core::Step step);
+  void put_back(core::Step step, core::Step confirmed);
   /// Publishes the bodies hosted here as a key frame of `generation`, even without observers.
   void publish_census(node::Node& node, core::Generation generation);
   void use_map(std::uint64_t map_version) { map_version_ = map_version; }

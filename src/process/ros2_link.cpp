@@ -40,8 +40,8 @@ void Ros2Link::begin(core::Generation generation) {
   held_.clear();
 }
 
-void Ros2Link::put_back(core::Step step) {
-  held_.put_back(step);
+void Ros2Link::put_back(core::Step step, core::Step confirmed) {
+  held_.put_back(step, confirmed);
   next_ = std::min(next_, (std::max(published_, step) / tick_steps_ + 1) * tick_steps_);
 }
 

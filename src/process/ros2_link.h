@@ -26,7 +26,7 @@ class Ros2Link {
   void publish(node::Node& node, core::Generation generation, bool leads);
   /// To be called when the run goes back to state `step`. Later states that have not been published yet are published
   /// when they have been computed again.
-  void put_back(core::Step step);
+  void put_back(core::Step step, core::Step confirmed);
   /// Messages received since the last call, as setpoints that name no state.
   std::vector<core::Setpoints> take(core::Generation generation);
   std::uint64_t refused() const { return bus_.refused(); }

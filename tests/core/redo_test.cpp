@@ -57,12 +57,13 @@ TEST(AlarmLog, KeepsWhatIsOlderThanTheCutAndPassesItOnAgain) {
   EXPECT_THAT(log.standing(), IsEmpty());
 }
 
-TEST(OrderLog, AfterARedoPassesOnWhatWasOrderedAfterIt) {
+TEST(OrderLog, AfterARedoPassesOnWhatMayNotHaveReachedAll) {
   OrderLog log;
-  log.announce({0, 1, 50, RemoveBody{kA}});
-  log.announce({0, 2, 90, RemoveBody{kB}});
+  constexpr Step kRound = 5;
+  log.announce({0, 1, 50, RemoveBody{kA}}, 10);
+  log.announce({0, 2, 90, RemoveBody{kB}}, 20);
   log.take_to_publish();
-  log.put_back(1);
+  log.put_back(10 + 2 * kRound + 1, kRound);
   const std::vector<Order> again = log.take_to_publish();
   ASSERT_THAT(again, SizeIs(1));
   EXPECT_EQ(again[0].sequence, 2u);

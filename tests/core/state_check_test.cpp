@@ -32,8 +32,7 @@ class TheCheck : public ::testing::Test {
     AuraBatch sent = batch(1, stamp);
     sent.full = stamp == 0;
     sent.updates = std::move(updates);
-    neighbours_[0].accept(std::move(sent));
-    neighbours_[0].apply_until(stamp, [this](const Neighbour& now) { check_.take(now); });
+    neighbours_[0].accept(std::move(sent), [this](const Neighbour& now) { check_.take(now); });
   }
   AuraRecord body(std::uint64_t id, Step stamp, const Vec3& p, const Vec3& v = Vec3::Zero()) const {
     AuraRecord record;

@@ -57,7 +57,7 @@ inline std::vector<core::Order> one_order_of_each_kind() {
       core::Save{"world.cut"},
       core::Load{"world.cut"},
       core::MoveStatic{core::StaticId{7}, pose, {-pose.p_WB, turn(1.1)}, 90},
-      core::Redo{30, {{core::BodyId{3}, core::BodyId{1'000'000'007}, 47}}}};
+      core::Redo{30, 35, true, {{core::BodyId{3}, core::BodyId{1'000'000'007}, 47}}}};
   std::vector<core::Order> orders;
   for (const core::Action& action : actions) {
     orders.push_back({orders.size() + 1, 0xabcd'0000'0000'0000U + orders.size(), 1000, action});

@@ -177,12 +177,25 @@ TEST_F(SavedStatesOfANode, TheRunGoesBackToBeforeItAndComputesItAgain) {
   saved_.ask(10);
   compute(10);
   saved_.note_whole(always);
-  saved_.put_back(9);
+  saved_.put_back(9, 0);
   saved_.note_whole(always);
   EXPECT_THAT(take_whole(20), IsEmpty());
   compute(10);
   saved_.note_whole(always);
   EXPECT_THAT(take_whole(20), ElementsAre(10));
+}
+
+/// Every node gives out the same part of the world: all as it was, or all as it is computed again.
+TEST_F(SavedStatesOfANode, AConfirmedStateStaysAsItWas) {
+  saved_.ask(10);
+  saved_.ask(12);
+  compute(10);
+  compute(12);
+  saved_.note_whole(always);
+  saved_.put_back(9, 10);
+  EXPECT_THAT(take_whole(5), ElementsAre(10)) << "whatever is confirmed after the redo";
+  saved_.note_whole(always);
+  EXPECT_THAT(take_whole(20), IsEmpty()) << "12 is to be computed again";
 }
 
 TEST_F(SavedStatesOfANode, WhatWasUnderWayIsPartOfIt) {
