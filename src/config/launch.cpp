@@ -182,7 +182,9 @@ void read_launch_map(const YamlNode& root, const std::vector<Override>& of_scene
 
 }  // namespace
 
-double Launch::uncertainty() const { return aura.uncertainty.value_or(core::usual_uncertainty(time.sync)); }
+double Launch::uncertainty() const {
+  return aura.uncertainty.value_or(core::usual_uncertainty(time.sync, lookahead()));
+}
 
 bool Launch::redoes() const {
   const bool on = time.redo == Redo::kOn || (time.redo == Redo::kAuto && time.sync == core::SyncMode::kDeterministic);

@@ -43,9 +43,9 @@ constexpr Step made_up(int lookahead) { return lookahead - 1; }
 /// A state is checked so many states later at the latest, because messages of others arrive within K states.
 constexpr Step check(int lookahead) { return lookahead + made_up(lookahead); }
 /// Number of states from one cut to the next. A redo computes at most so many states more than it has to.
-inline constexpr Step kBetweenCuts = 5;
+inline constexpr Step kBetweenCuts = 2;
 /// Number of states between the older cuts, which are kept for pairs that a redo has not brought together.
-inline constexpr Step kBetweenOlderCuts = 6 * kBetweenCuts;
+inline constexpr Step kBetweenOlderCuts = 15 * kBetweenCuts;
 /// A redo goes back to a cut at least so many states before the touch that it has to prevent. The pair comes to one
 /// host through one pull, which is decided one state after its cause is known. Where it takes more pulls, the next redo
 /// goes back to an older cut.

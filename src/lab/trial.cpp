@@ -20,7 +20,7 @@ const node::SeenCollision* first_contact(const node::StepReport& report) {
 ClusterRules rules_of(const Conditions& conditions, const Variant& variant, const Disorder& disorder) {
   ClusterRules rules;
   rules.aura = rules_for(variant.aura, conditions);
-  rules.aura.uncertainty = core::usual_uncertainty(variant.sync);
+  rules.aura.uncertainty = core::usual_uncertainty(variant.sync, rules.aura.lookahead);
   rules.sync = variant.sync;
   rules.network.latency_s = conditions.latency_s;
   rules.network.loss = conditions.loss;

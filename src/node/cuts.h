@@ -46,8 +46,8 @@ class Cuts {
 
   /// Drops the cuts to which no redo can go back any more. Of those that are only needed for a pair that a redo has not
   /// brought together, one every kBetweenOlderCuts states stays. All nodes go back to the same state, so no node may
-  /// drop its cut before all have confirmed later states. `alarms_given_up`: no alarm leads to a redo any more, so one
-  /// may stand for ever. Precondition: not empty.
+  /// drop its cut before all have confirmed later states. The cut before the one that the next redo needs stays, too.
+  /// `alarms_given_up`: no alarm leads to a redo any more, so one may stand for ever. Precondition: not empty.
   void forget(core::Step confirmed, bool alarms_given_up);
   /// The redo that brings the pairs of the alarms to one host. `together`: pairs that share a host already. If one of
   /// them has raised the first alarm, the redo goes back farther than the last one. Preconditions: not empty, and
