@@ -24,7 +24,8 @@ bool is_plane(const btBroadphaseProxy& proxy) {
 /// Drops points that have slid away. Bullet looks for more corners on a plane only while a manifold has fewer than four
 /// points, and it would count these.
 void drop_stale_points(btCollisionAlgorithm& algorithm) {
-  btManifoldArray manifolds;
+  thread_local btManifoldArray manifolds;  // keeps its memory
+  manifolds.resizeNoInitialize(0);
   algorithm.getAllContactManifolds(manifolds);
   for (int i = 0; i < manifolds.size(); ++i) {
     manifolds[i]->refreshContactPoints(manifolds[i]->getBody0()->getWorldTransform(),
@@ -50,11 +51,19 @@ void near_callback(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, co
 
 /// Two compounds are treated as a compound of compounds: Bullet's algorithm for two needs the trees that shapes.cpp
 /// leaves out, and hides which manifold belongs to which parts.
-Dispatcher::Dispatcher(btCollisionConfiguration& configuration) : btCollisionDispatcher(&configuration) {
+Dispatcher::Dispatcher(btCollisionConfiguration& configuration)
+    : btCollisionDispatcher(&configuration),
+      hull_contacts_(
+          *configuration.getCollisionAlgorithmCreateFunc(CONVEX_HULL_SHAPE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE),
+          kContactMargin) {
   setNearCallback(near_callback);
   registerCollisionCreateFunc(
       COMPOUND_SHAPE_PROXYTYPE, COMPOUND_SHAPE_PROXYTYPE,
       configuration.getCollisionAlgorithmCreateFunc(COMPOUND_SHAPE_PROXYTYPE, SPHERE_SHAPE_PROXYTYPE));
+  for (const int other : {CUSTOM_POLYHEDRAL_SHAPE_TYPE, BOX_SHAPE_PROXYTYPE}) {
+    registerCollisionCreateFunc(CUSTOM_POLYHEDRAL_SHAPE_TYPE, other, &hull_contacts_);
+    registerCollisionCreateFunc(other, CUSTOM_POLYHEDRAL_SHAPE_TYPE, &hull_contacts_);
+  }
 }
 
 btPersistentManifold* Dispatcher::getNewManifold(const btCollisionObject* body0, const btCollisionObject* body1) {

@@ -6,6 +6,8 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 
+#include "physics/hull_contacts.h"
+
 namespace aurasim::physics {
 
 /// Largest gap of a contact, metres. It is the same for bodies of all sizes (Bullet's own grows with the shape),
@@ -22,7 +24,11 @@ class Dispatcher : public btCollisionDispatcher {
   void* allocateCollisionAlgorithm(int bytes) override;
   void freeCollisionAlgorithm(void* memory) override;
 
+  /// While this is set, hulls and boxes get a manifold also if they do not touch.
+  void make_all_manifolds(bool wanted) { hull_contacts_.make_all_manifolds(wanted); }
+
  private:
+  HullContactsMaker hull_contacts_;
   std::mutex pools_;
 };
 

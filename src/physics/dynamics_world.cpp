@@ -163,10 +163,12 @@ void DynamicsWorld::make_manifolds(btRigidBody& a, btRigidBody& b, std::vector<P
   if (pair == nullptr) return;
   if (pair->m_algorithm == nullptr) make_algorithm(*pair, bullet_->dispatcher);
   collect_manifolds(*pair, result);
-  // Only compounds need a collision test, because not all of their parts have manifolds. For other pairs it would be
-  // most of the work of a hand-off.
+  // Only compounds and hulls need a collision test, because not all of their parts have manifolds. For other pairs it
+  // would be most of the work of a hand-off.
   if (result.empty() || result.front().parts != Parts{}) {
+    bullet_->dispatcher.make_all_manifolds(true);
     btCollisionDispatcher::defaultNearCallback(*pair, bullet_->dispatcher, bullet_->world->getDispatchInfo());
+    bullet_->dispatcher.make_all_manifolds(false);
     collect_manifolds(*pair, result);
   }
   for (const PartManifold& made : result) made.manifold->clearManifold();

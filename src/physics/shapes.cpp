@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
 #include <BulletCollision/CollisionShapes/btCapsuleShape.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
@@ -68,7 +67,7 @@ struct MakeConvex {
     return std::make_unique<btCapsuleShapeZ>(scalar(s.radius), scalar(s.height));
   }
   std::unique_ptr<btConvexShape> operator()(const core::Box& s) const {
-    return with_margin(std::make_unique<btBoxShape>(to_bullet(s.half_extents)), margin);
+    return with_margin(std::make_unique<BoxShape>(s.half_extents), margin);
   }
   std::unique_ptr<btConvexShape> operator()(const core::Cylinder& s) const {
     const core::Vec3 half_extents(s.radius, s.radius, s.height / 2);
@@ -76,7 +75,9 @@ struct MakeConvex {
   }
   std::unique_ptr<btConvexShape> operator()(const core::ConvexHull& s) const {
     if (margin == Margin::kNone) return exact_hull(s, 0);
-    return shrunken_hull(s);
+    std::unique_ptr<HullShape> hull = shrunken_hull(s);
+    hull->set_faces(hull_faces(s.points));
+    return hull;
   }
 };
 

@@ -1,5 +1,6 @@
 // A warm step of the soft step allocates nothing.
 #include <atomic>
+#include <cmath>
 #include <cstdlib>
 #include <new>
 
@@ -60,6 +61,30 @@ TEST(Allocation, AWarmStepAllocatesNothing) {
     for (int i = 0; i < 200; ++i)
       boxes.push_back(body(boxes.size(), 0, {1.5 * (i % 10), 1.5 * (i / 50), 0.5 + i / 10 % 5}));
     world.add(boxes);
+    run(world, 200);
+    EXPECT_EQ(allocations_of(world, 20), 0) << threads << " threads";
+  }
+}
+
+/// Towers of hulls.
+TEST(Allocation, AWarmStepOfHullsAllocatesNothing) {
+  core::ConvexHull prism;
+  for (int i = 0; i < 14; ++i) {
+    prism.points.emplace_back(0.4 * std::cos(i / 2 * 0.9), 0.4 * std::sin(i / 2 * 0.9), i % 2 == 0 ? -0.2 : 0.2);
+  }
+  core::Scene scene = scene_of(prism);
+  scene.prototypes[0].can_sleep = false;
+  for (const int threads : {1, 2}) {
+    Settings settings;
+    settings.solver = Solver::kSoftStep;
+    settings.continuous = true;
+    settings.threads = threads;
+    RegionWorld world(scene, settings);
+    std::vector<core::BodyRecord> prisms;
+    for (int i = 0; i < 200; ++i) {
+      prisms.push_back(body(prisms.size(), 0, {1.5 * (i % 10), 1.5 * (i / 50), 0.2 + 0.4 * (i / 10 % 5)}));
+    }
+    world.add(prisms);
     run(world, 200);
     EXPECT_EQ(allocations_of(world, 20), 0) << threads << " threads";
   }

@@ -1,4 +1,5 @@
 // The arithmetic of the soft step, which is compiled for several sets of instructions: none changes a bit.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -236,6 +237,38 @@ TEST(SoftKernels, TheFarthestPointIsTheFirstOfThoseWithEverySetOfInstructions) {
   expect_farthest<float>([](const soft::Kernel& kernel, const auto& p, const auto& along) {
     return kernel.farthest_single(p[0].data(), p[1].data(), p[2].data(), p[0].size(), along);
   });
+}
+
+TEST(SoftKernels, BoundsAndReachAreThoseOfALoopWithEverySetOfInstructions) {
+  std::mt19937_64 random(4);
+  for (int trial = 0; trial < 200; ++trial) {
+    const std::size_t count = soft::kPointsAtOnce * (1 + random() % 4);
+    std::vector<double> points[3], before(count);
+    for (auto& coordinate : points) {
+      while (coordinate.size() < count) coordinate.push_back(static_cast<double>(static_cast<int>(random() % 3) - 1));
+    }
+    for (double& bound : before) bound = random() % 4 == 0 ? -HUGE_VAL : random() % 3 == 0 ? HUGE_VAL : 0.5;
+    const double along[3] = {uniform(random, -1, 1), static_cast<double>(trial % 2), 0};
+    std::vector<double> products(count), wanted = before;
+    for (std::size_t i = 0; i < count; ++i) {
+      products[i] = points[0][i] * along[0] + points[1][i] * along[1] + points[2][i] * along[2];
+      wanted[i] = std::min(before[i], products[i]);
+    }
+    const auto highest = static_cast<std::size_t>(std::max_element(wanted.begin(), wanted.end()) - wanted.begin());
+    const auto [least, most] = std::minmax_element(products.begin(), products.end());
+    for (const soft::Kernel& kernel : kernels_of_this_machine()) {
+      double ends[2];
+      kernel.reach(points[0].data(), points[1].data(), points[2].data(), count, along, ends);
+      ASSERT_EQ(ends[0], *least);
+      ASSERT_EQ(ends[1], *most);
+      std::vector<double> found(count), bounds = before;
+      ASSERT_EQ(kernel.tighten(points[0].data(), points[1].data(), points[2].data(), count, along, found.data(),
+                               bounds.data()),
+                highest);
+      ASSERT_EQ(found, products);
+      ASSERT_EQ(bounds, wanted);
+    }
+  }
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 namespace aurasim::physics::soft {
 namespace {
 
-constexpr Kernel kThis = {move,         warm_start,       solve,          bounce, look_at_joints, begin_joints,
-                          solve_joints, farthest<double>, farthest<float>};
+constexpr Kernel kThis = {move,         warm_start,       solve,           bounce,  look_at_joints, begin_joints,
+                          solve_joints, farthest<double>, farthest<float>, tighten, reach};
 
 }  // namespace
 }  // namespace aurasim::physics::soft

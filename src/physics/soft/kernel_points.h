@@ -1,4 +1,4 @@
-// The part of soft/kernel.h that finds the farthest points of hulls.
+// The part of soft/kernel.h that finds the farthest points of hulls, and bounds their gaps.
 #pragma once
 
 #include "physics/soft/kernel_vectors.h"
@@ -31,6 +31,19 @@ AURASIM_INLINE Farthest<Number> farther(const Farthest<Number>& a, const Farthes
   return {is_b ? b.far : a.far, is_b ? b.place : a.place};
 }
 
+/// The place of the farthest of all lanes.
+template <class Number>
+AURASIM_INLINE std::size_t first_of(Farthest<Number> all) {
+  using Places = typename Vectors<Number>::Places;
+  constexpr int kAtOnce = sizeof(Places) / sizeof(Number);
+  for (int apart = kAtOnce / 2; apart > 0; apart /= 2) {
+    Places other;
+    for (int i = 0; i < kAtOnce; ++i) other[i] = i ^ apart;
+    all = farther(all, {__builtin_shuffle(all.far, other), __builtin_shuffle(all.place, other)});
+  }
+  return static_cast<std::size_t>(all.place[0]);
+}
+
 template <class Number>
 std::size_t farthest(const Number* x, const Number* y, const Number* z, std::size_t count, const Number (&along)[3]) {
   using Values = typename Vectors<Number>::Values;
@@ -54,13 +67,57 @@ std::size_t farthest(const Number* x, const Number* y, const Number* z, std::siz
     even = {next_is ? next.far : even.far, next_is ? next.place : even.place};
     odd = {after_is ? after.far : odd.far, after_is ? after.place : odd.place};
   }
-  Farthest<Number> all = farther(even, odd);
-  for (int apart = kAtOnce / 2; apart > 0; apart /= 2) {
-    Places other;
-    for (int i = 0; i < kAtOnce; ++i) other[i] = i ^ apart;
-    all = farther(all, {__builtin_shuffle(all.far, other), __builtin_shuffle(all.place, other)});
+  return first_of(farther(even, odd));
+}
+
+/// See Kernel::reach.
+void reach(const double* x, const double* y, const double* z, std::size_t count, const double (&along)[3],
+           double (&ends)[2]) {
+  using Values = Vectors<double>::Values;
+  constexpr int kAtOnce = sizeof(Values) / sizeof(double);
+  const auto load = [](const double* from) {
+    Values to;
+    __builtin_memcpy(&to, from, sizeof to);
+    return to;
+  };
+  const auto look = [&](std::size_t i) {
+    return load(x + i) * along[0] + load(y + i) * along[1] + load(z + i) * along[2];
+  };
+  Values low = look(0), high = low;
+  for (std::size_t i = kAtOnce; i < count; i += kAtOnce) {
+    const Values next = look(i);
+    low = next < low ? next : low;
+    high = next > high ? next : high;
   }
-  return static_cast<std::size_t>(all.place[0]);
+  ends[0] = low[0], ends[1] = high[0];
+  for (int i = 1; i < kAtOnce; ++i) {
+    ends[0] = low[i] < ends[0] ? low[i] : ends[0];
+    ends[1] = high[i] > ends[1] ? high[i] : ends[1];
+  }
+}
+
+/// See Kernel::tighten.
+std::size_t tighten(const double* x, const double* y, const double* z, std::size_t count, const double (&along)[3],
+                    double* products, double* bounds) {
+  using Values = Vectors<double>::Values;
+  constexpr int kAtOnce = sizeof(Values) / sizeof(double);
+  const auto load = [](const double* from) {
+    Values to;
+    __builtin_memcpy(&to, from, sizeof to);
+    return to;
+  };
+  Vectors<double>::Places place;
+  for (int i = 0; i < kAtOnce; ++i) place[i] = i;
+  Farthest<double> highest{};
+  for (std::size_t i = 0; i < count; i += kAtOnce, place += kAtOnce) {
+    const Values product = load(x + i) * along[0] + load(y + i) * along[1] + load(z + i) * along[2];
+    const Values before = load(bounds + i), bound = product < before ? product : before;
+    __builtin_memcpy(products + i, &product, sizeof product);
+    __builtin_memcpy(bounds + i, &bound, sizeof bound);
+    const Vectors<double>::Places is = i == 0 ? bound == bound : bound > highest.far;
+    highest = {is ? bound : highest.far, is ? place : highest.place};
+  }
+  return first_of(highest);
 }
 
 }  // namespace

@@ -157,6 +157,13 @@ struct Kernel {
                                  const double (&along)[3]);
   std::size_t (*farthest_single)(const float* x, const float* y, const float* z, std::size_t count,
                                  const float (&along)[3]);
+  /// Writes the products of `count` points with `along`, and lowers `bounds` to them. Returns the index of the highest
+  /// bound; the first one of several. `count` is a multiple of kPointsAtOnce. No bound may be NaN.
+  std::size_t (*tighten)(const double* x, const double* y, const double* z, std::size_t count, const double (&along)[3],
+                         double* products, double* bounds);
+  /// The least and the largest product of `count` points with `along`. `count` is a multiple of kPointsAtOnce.
+  void (*reach)(const double* x, const double* y, const double* z, std::size_t count, const double (&along)[3],
+                double (&ends)[2]);
 };
 
 Kernel kernel_sse2();
