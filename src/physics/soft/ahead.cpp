@@ -5,6 +5,9 @@
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
 
+#include "physics/hull_axes.h"
+#include "physics/hull_faces.h"
+
 namespace aurasim::physics {
 namespace {
 
@@ -42,6 +45,15 @@ bool can_be_cast(const btCollisionObject& object) {
   return !object.isStaticObject() && (shape.isConvex() || shape.isCompound());
 }
 
+/// Hulls and boxes that pass each other are most of those that might meet, and a cast takes several times as long.
+bool pass_each_other(const btCollisionObject& a, const btCollisionObject& b, const btVector3& way) {
+  const HullFaces* const of_a = hull_faces_of(*a.getCollisionShape());
+  const HullFaces* const of_b = hull_faces_of(*b.getCollisionShape());
+  if (of_a == nullptr || of_b == nullptr) return false;
+  const btTransform& X_A = a.getWorldTransform();
+  return stay_apart(*of_a, *of_b, X_A.inverseTimes(b.getWorldTransform()), -(way * X_A.getBasis()));
+}
+
 }  // namespace
 
 std::optional<SoftMeeting> meeting_ahead(const btCollisionObject& a, const btCollisionObject& b, const btVector3& way) {
@@ -56,6 +68,7 @@ std::optional<SoftMeeting> meeting_ahead(const btCollisionObject& a, const btCol
     }
     return turned_round;
   }
+  if (pass_each_other(a, b, way)) return std::nullopt;
   const btTransform& from = a.getWorldTransform();
   Hit hit(from.getOrigin(), from.getOrigin() + way);
   cast(*a.getCollisionShape(), from, way, b, hit);
