@@ -90,24 +90,27 @@ TEST_F(CutsOfANode, WhatARedoMayStillNeedIsNotForgotten) {
   EXPECT_EQ(cuts_.oldest(), 300 - 4 * kEvery);
 }
 
-TEST_F(CutsOfANode, OfTheOnesBeforeAConfirmedStateOnlyEverySixthIsKept) {
+TEST_F(CutsOfANode, OfTheOnesBeforeAConfirmedStateOnlyAFewAreKept) {
   Cuts cuts(kLookahead);
   for (Step step = 0; step <= 300; step += core::horizon::kBetweenCuts) {
     cuts.keep(cut_of(step));
     cuts.forget(step - 20, false);
   }
   std::vector<Step> kept;
-  for (const Step step : {300, 295, 290, 285, 280, 275, 270, 265, 260, 255, 250, 245, 240, 210, 180, 150, 120}) {
+  for (Step step = 300; step >= 0; --step) {
     try {
       kept.push_back(cuts.back_to(step).step);
     } catch (const std::logic_error&) {
     }
   }
-  const Step needed = 300 - 20 + 1 - core::horizon::before_touch(kLookahead);
+  // For a touch in the first state that is not confirmed, and for one in the state after the cut of that.
+  const auto cut_before = [](Step touch) {
+    const Step wanted = touch - core::horizon::before_touch(kLookahead);
+    return wanted - wanted % core::horizon::kBetweenCuts;
+  };
+  const Step needed = cut_before(cut_before(300 - 20 + 1) + 1);
   std::vector<Step> expected;
-  for (Step step = 300; step + core::horizon::kBetweenCuts > needed; step -= core::horizon::kBetweenCuts) {
-    expected.push_back(step);
-  }
+  for (Step step = 300; step >= needed; step -= core::horizon::kBetweenCuts) expected.push_back(step);
   for (int i = 0; i < 4; ++i) {
     Step step = (expected.back() - 1) / kEvery * kEvery;
     expected.push_back(step);
