@@ -6,8 +6,12 @@
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 #include <BulletCollision/CollisionDispatch/btCollisionConfiguration.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 #include <LinearMath/btAabbUtil2.h>
+
+#include "physics/corrected_result.h"
+#include "physics/inner_edges.h"
 
 namespace aurasim::physics {
 namespace {
@@ -33,26 +37,41 @@ void drop_stale_points(btCollisionAlgorithm& algorithm) {
   }
 }
 
-/// Drops the contacts of pairs whose bounds do not overlap in this substep. The broadphase keeps pairs that were near
-/// once, for times that differ from world to world.
-void near_callback(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
-  if (bounds_overlap(*pair.m_pProxy0, *pair.m_pProxy1)) {
-    const bool with_plane = is_plane(*pair.m_pProxy0) || is_plane(*pair.m_pProxy1);
-    if (with_plane && pair.m_algorithm != nullptr) drop_stale_points(*pair.m_algorithm);
-    btCollisionDispatcher::defaultNearCallback(pair, dispatcher, info);
-  } else if (pair.m_algorithm != nullptr) {
-    pair.m_algorithm->~btCollisionAlgorithm();
-    dispatcher.freeCollisionAlgorithm(pair.m_algorithm);
-    pair.m_algorithm = nullptr;
+/// Like Bullet's callback, with corrected contacts. Returns true if it has left out some.
+bool find_corrected(btBroadphasePair& pair, Dispatcher& dispatcher, const btDispatcherInfo& info) {
+  auto& a = *static_cast<btCollisionObject*>(pair.m_pProxy0->m_clientObject);
+  auto& b = *static_cast<btCollisionObject*>(pair.m_pProxy1->m_clientObject);
+  if (!dispatcher.needsCollision(&a, &b)) return false;
+  const btCollisionObjectWrapper wrap_a(nullptr, a.getCollisionShape(), &a, a.getWorldTransform(), -1, -1);
+  const btCollisionObjectWrapper wrap_b(nullptr, b.getCollisionShape(), &b, b.getWorldTransform(), -1, -1);
+  if (pair.m_algorithm == nullptr) {
+    pair.m_algorithm = dispatcher.findAlgorithm(&wrap_a, &wrap_b, nullptr, BT_CONTACT_POINT_ALGORITHMS);
   }
+  if (pair.m_algorithm == nullptr) return false;
+  CorrectedResult result(wrap_a, wrap_b, dispatcher.inner_edges());
+  pair.m_algorithm->processCollision(&wrap_a, &wrap_b, info, &result);
+  return result.has_left_out();
+}
+
+bool has_inner_edges(const btBroadphasePair& pair, const InnerEdges& inner_edges) {
+  for (const btBroadphaseProxy* proxy : {pair.m_pProxy0, pair.m_pProxy1}) {
+    const auto& object = *static_cast<const btCollisionObject*>(proxy->m_clientObject);
+    if (object.isStaticOrKinematicObject() && inner_edges.concerns(object)) return true;
+  }
+  return false;
+}
+
+void near_callback(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
+  static_cast<Dispatcher&>(dispatcher).find_contacts(pair, info);
 }
 
 }  // namespace
 
 /// Two compounds are treated as a compound of compounds: Bullet's algorithm for two needs the trees that shapes.cpp
 /// leaves out, and hides which manifold belongs to which parts.
-Dispatcher::Dispatcher(btCollisionConfiguration& configuration)
+Dispatcher::Dispatcher(btCollisionConfiguration& configuration, const InnerEdges& inner_edges)
     : btCollisionDispatcher(&configuration),
+      inner_edges_(inner_edges),
       hull_contacts_(
           *configuration.getCollisionAlgorithmCreateFunc(CONVEX_HULL_SHAPE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE),
           kContactMargin) {
@@ -64,6 +83,21 @@ Dispatcher::Dispatcher(btCollisionConfiguration& configuration)
     registerCollisionCreateFunc(CUSTOM_POLYHEDRAL_SHAPE_TYPE, other, &hull_contacts_);
     registerCollisionCreateFunc(other, CUSTOM_POLYHEDRAL_SHAPE_TYPE, &hull_contacts_);
   }
+}
+
+bool Dispatcher::find_contacts(btBroadphasePair& pair, const btDispatcherInfo& info) {
+  if (!bounds_overlap(*pair.m_pProxy0, *pair.m_pProxy1)) {
+    if (pair.m_algorithm == nullptr) return false;
+    pair.m_algorithm->~btCollisionAlgorithm();
+    freeCollisionAlgorithm(pair.m_algorithm);
+    pair.m_algorithm = nullptr;
+    return false;
+  }
+  const bool with_plane = is_plane(*pair.m_pProxy0) || is_plane(*pair.m_pProxy1);
+  if (with_plane && pair.m_algorithm != nullptr) drop_stale_points(*pair.m_algorithm);
+  if (has_inner_edges(pair, inner_edges_)) return find_corrected(pair, *this, info);
+  defaultNearCallback(pair, *this, info);
+  return false;
 }
 
 btPersistentManifold* Dispatcher::getNewManifold(const btCollisionObject* body0, const btCollisionObject* body1) {

@@ -10,6 +10,8 @@
 
 namespace aurasim::physics {
 
+class InnerEdges;
+
 /// Largest gap of a contact, metres. It is the same for bodies of all sizes (Bullet's own grows with the shape),
 /// because auras rely on it.
 inline constexpr double kContactMargin = 0.02;
@@ -17,7 +19,15 @@ inline constexpr double kContactMargin = 0.02;
 /// Several threads may compute the contacts of different pairs at the same time.
 class Dispatcher : public btCollisionDispatcher {
  public:
-  explicit Dispatcher(btCollisionConfiguration& configuration);
+  /// `inner_edges` have to outlive the dispatcher.
+  Dispatcher(btCollisionConfiguration& configuration, const InnerEdges& inner_edges);
+
+  const InnerEdges& inner_edges() const { return inner_edges_; }
+
+  /// Computes the contacts of a pair. Drops them if the bodies' bounds do not overlap in this substep: the broadphase
+  /// keeps pairs that were near once, for times that differ from world to world. Returns true if points with inner
+  /// edges were left out (inner_edges.h).
+  bool find_contacts(btBroadphasePair& pair, const btDispatcherInfo& info);
 
   btPersistentManifold* getNewManifold(const btCollisionObject* body0, const btCollisionObject* body1) override;
   void releaseManifold(btPersistentManifold* manifold) override;
@@ -28,6 +38,7 @@ class Dispatcher : public btCollisionDispatcher {
   void make_all_manifolds(bool wanted) { hull_contacts_.make_all_manifolds(wanted); }
 
  private:
+  const InnerEdges& inner_edges_;
   HullContactsMaker hull_contacts_;
   std::mutex pools_;
 };

@@ -14,6 +14,7 @@
 #include "physics/bullet_convert.h"
 #include "physics/contact_pairs.h"
 #include "physics/dispatcher.h"
+#include "physics/inner_edges.h"
 #include "physics/moving_static.h"
 #include "physics/prefetch.h"
 #include "physics/soft/world.h"
@@ -63,7 +64,8 @@ struct DynamicsWorld::Bullet {
         sums_itself(settings.looks_once()) {}
 
   btDefaultCollisionConfiguration configuration;
-  Dispatcher dispatcher{configuration};
+  InnerEdges inner_edges;
+  Dispatcher dispatcher{configuration, inner_edges};
   ContactPairs pairs;
   btDbvtBroadphase broadphase{&pairs};
   std::unique_ptr<btConstraintSolver> solver;
@@ -108,6 +110,17 @@ void DynamicsWorld::insert(btRigidBody& body, int rank, bool collides) {
   bullet_->world->updateSingleAabb(&body);  // includes the margin, because bounds of sleepers are not updated later
 }
 
+void DynamicsWorld::insert_static(btRigidBody& fixed, int rank, const btTransform& start) {
+  bullet_->inner_edges.insert(fixed, start);
+  insert(fixed, rank);
+}
+
+void DynamicsWorld::remove_static(btRigidBody& fixed) {
+  bullet_->inner_edges.remove(fixed);
+  btRigidBody* const leaving = &fixed;
+  remove({&leaving, 1});
+}
+
 void DynamicsWorld::remove(std::span<btRigidBody* const> bodies) {
   std::vector<btBroadphaseProxy*> proxies;
   for (btRigidBody* body : bodies) proxies.push_back(body->getBroadphaseProxy());
@@ -150,6 +163,7 @@ void DynamicsWorld::disconnect(btTypedConstraint& joint) { bullet_->world->remov
 
 void DynamicsWorld::step(double substep_s) {
   const btScalar dt = static_cast<btScalar>(substep_s);
+  bullet_->inner_edges.settle();
   bullet_->world->stepSimulation(dt, /*maxSubSteps=*/0, dt);
   if (bullet_->contact_impulses.wanted() && !bullet_->sums_itself) bullet_->contact_impulses.look(manifolds());
 }

@@ -26,6 +26,9 @@ class DynamicsWorld {
   /// Inserts a body. `rank` > 0 has to be the same in every world; it decides which body of a pair is body0. Insert
   /// bodies in the order of ranks. `collides` false: the body touches nothing.
   void insert(btRigidBody& body, int rank, bool collides = true);
+  /// Inserts a static. `start`: its pose at the start of the run.
+  void insert_static(btRigidBody& fixed, int rank, const btTransform& start);
+  void remove_static(btRigidBody& fixed);
   /// Removes bodies with all their contacts.
   void remove(std::span<btRigidBody* const> bodies);
 

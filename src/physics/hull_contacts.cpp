@@ -13,6 +13,7 @@
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
+#include "physics/corrected_result.h"
 #include "physics/hull_axes.h"
 #include "physics/hull_clip.h"
 #include "physics/hull_faces.h"
@@ -46,7 +47,7 @@ class HullContacts final : public btCollisionAlgorithm {
     if (manifold_ == nullptr) return;
     result->setPersistentManifold(manifold_);
     if (closest) {
-      put_points(*a, *b, X_AB, *closest);
+      put_points(*a, *b, X_AB, *closest, dynamic_cast<CorrectedResult*>(result));
     } else {
       manifold_->clearManifold();
     }
@@ -63,8 +64,9 @@ class HullContacts final : public btCollisionAlgorithm {
   }
 
  private:
+  /// `inner_edges` corrects the points with a static; may be null.
   void put_points(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, const btTransform& X_AB,
-                  const HullGap& closest) {
+                  const HullGap& closest, CorrectedResult* inner_edges) {
     std::array<btManifoldPoint, MANIFOLD_CACHE_SIZE> before;
     std::array<HullFeatures, MANIFOLD_CACHE_SIZE> features;
     const auto count = static_cast<std::size_t>(manifold_->getNumContacts());
@@ -74,11 +76,20 @@ class HullContacts final : public btCollisionAlgorithm {
     }
     const HullPoints found =
         contact_points(faces_of(a), faces_of(b), X_AB, closest, margin_, std::span(features).first(count));
-    manifold_->setNumContacts(found.count);
+    manifold_->setNumContacts(0);
     for (int i = 0; i < found.count; ++i) {
       const HullPoint& point = found.points[static_cast<std::size_t>(i)];
-      btManifoldPoint& to = manifold_->getContactPoint(i);
-      to = made_point(a, b, found.normal, point);
+      const btTransform& X_A = a.getWorldTransform();
+      PointOnB where{-(X_A.getBasis() * found.normal), X_A(point.on_b), point.gap};
+      if (inner_edges != nullptr) {
+        const std::optional<PointOnB> corrected = inner_edges->corrected(a, b, where);
+        if (!corrected || is_there(corrected->on_b, where)) continue;
+        where = *corrected;
+      }
+      const int place = manifold_->getNumContacts();
+      manifold_->setNumContacts(place + 1);
+      btManifoldPoint& to = manifold_->getContactPoint(place);
+      to = made_point(a, b, where, point.features);
       const auto old =
           std::find(features.begin(), features.begin() + static_cast<std::ptrdiff_t>(count), point.features);
       if (old != features.begin() + static_cast<std::ptrdiff_t>(count)) {
@@ -90,24 +101,34 @@ class HullContacts final : public btCollisionAlgorithm {
     }
   }
 
+  /// True if a point was moved to `on_b`, where the pair has one already. Several points on an inner edge can be moved to
+  /// one place.
+  bool is_there(const btVector3& on_b, const PointOnB& found) const {
+    const btScalar near2 = static_cast<btScalar>(margin_ * margin_);
+    if (on_b.distance2(found.on_b) == 0) return false;
+    for (int i = 0; i < manifold_->getNumContacts(); ++i) {
+      if (manifold_->getContactPoint(i).m_positionWorldOnB.distance2(on_b) < near2) return true;
+    }
+    return false;
+  }
+
   static bool uses_callback(const btCollisionObjectWrapper& object) {
     return (object.getCollisionObject()->getCollisionFlags() & btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK) != 0;
   }
 
   static btManifoldPoint made_point(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b,
-                                    const btVector3& normal, const HullPoint& point) {
+                                    const PointOnB& where, HullFeatures features) {
     const btCollisionObject &object_a = *a.getCollisionObject(), &object_b = *b.getCollisionObject();
-    const btTransform& X_A = a.getWorldTransform();
-    const btVector3 on_a = X_A(point.on_a), on_b = X_A(point.on_b);
-    btManifoldPoint made(object_a.getWorldTransform().invXform(on_a), object_b.getWorldTransform().invXform(on_b),
-                         -(X_A.getBasis() * normal), point.gap);
+    const btVector3 on_a = where.on_b + where.normal * where.gap_m;
+    btManifoldPoint made(object_a.getWorldTransform().invXform(on_a), object_b.getWorldTransform().invXform(where.on_b),
+                         where.normal, where.gap_m);
     made.m_positionWorldOnA = on_a;
-    made.m_positionWorldOnB = on_b;
+    made.m_positionWorldOnB = where.on_b;
     made.m_combinedFriction = btManifoldResult::calculateCombinedFriction(&object_a, &object_b);
     made.m_combinedRestitution = btManifoldResult::calculateCombinedRestitution(&object_a, &object_b);
     made.m_combinedRollingFriction = btManifoldResult::calculateCombinedRollingFriction(&object_a, &object_b);
     made.m_combinedSpinningFriction = btManifoldResult::calculateCombinedSpinningFriction(&object_a, &object_b);
-    made.m_partId0 = point.features.of_a, made.m_partId1 = point.features.of_b;
+    made.m_partId0 = features.of_a, made.m_partId1 = features.of_b;
     made.m_index0 = a.m_index, made.m_index1 = b.m_index;
     made.m_lifeTime = 1;
     return made;

@@ -63,9 +63,9 @@ void Simulation::show_statics(core::Step n) {
     const Bounds there = bounds_of(*changing);
     wake_near({&there, 1});
     if (stands) {
-      world_.insert(*changing, 1 + static_cast<int>(i));
+      world_.insert_static(*changing, 1 + static_cast<int>(i), to_bullet(scene_->statics[i].pose));
     } else {
-      world_.remove({&changing, 1});
+      world_.remove_static(*changing);
     }
     static_is_in_[i] = stands;
   }

@@ -12,6 +12,7 @@
 #include <LinearMath/btAabbUtil2.h>
 
 #include "core/progress.h"
+#include "physics/dispatcher.h"
 #include "physics/first_contacts.h"
 #include "physics/moving_static.h"
 #include "physics/part_surfaces.h"
@@ -215,12 +216,13 @@ void SoftContacts::meet(const WillMeet& two, btCollisionDispatcher& dispatcher, 
   auto& moved = *static_cast<btCollisionObject*>((first_moves ? pair.m_pProxy0 : pair.m_pProxy1)->m_clientObject);
   const btTransform place = moved.getWorldTransform();
   moved.setWorldTransform(btTransform(place.getBasis(), place.getOrigin() + (first_moves ? shift : -shift)));
-  dispatcher.getNearCallback()(pair, dispatcher, info);
-  collect_ahead(pair, two.meeting, shift);
+  const bool has_left_out = static_cast<Dispatcher&>(dispatcher).find_contacts(pair, info);
+  collect_ahead(pair, two.meeting, shift, has_left_out);
   moved.setWorldTransform(place);
 }
 
-void SoftContacts::collect_ahead(const btBroadphasePair& pair, const SoftMeeting& meeting, const btVector3& shift) {
+void SoftContacts::collect_ahead(const btBroadphasePair& pair, const SoftMeeting& meeting, const btVector3& shift,
+                                 bool has_left_out) {
   const btCollisionObject &a = body_of(*pair.m_pProxy0), &b = body_of(*pair.m_pProxy1);
   List& list = lists_[0];
   const auto first = static_cast<std::uint32_t>(list.patches.size());
@@ -233,7 +235,8 @@ void SoftContacts::collect_ahead(const btBroadphasePair& pair, const SoftMeeting
     read(list, touch, manifolds[i]->getBody0() == &a ? shift : -shift);
     manifolds[i]->clearManifold();
   }
-  if (list.patches.size() == first) {  // they touch so slightly that Bullet finds no point
+  if (list.patches.size() == first && has_left_out) return;  // they only touch inner edges
+  if (list.patches.size() == first) {                        // they touch so slightly that Bullet finds no point
     SoftTouch& touch = touches_.emplace_back();
     touch.ahead = true;
     touch.a = a.getUserIndex(), touch.b = b.getUserIndex(), touch.slot_a = slot_of(a), touch.slot_b = slot_of(b);

@@ -82,7 +82,8 @@ class SoftContacts {
   void know_touches(List& list, const btBroadphasePair& pair) const;
   void look_ahead(List& list, btBroadphasePair& pair);
   void meet(const WillMeet& two, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info);
-  void collect_ahead(const btBroadphasePair& pair, const SoftMeeting& meeting, const btVector3& shift);
+  void collect_ahead(const btBroadphasePair& pair, const SoftMeeting& meeting, const btVector3& shift,
+                     bool has_left_out);
   /// Reads the patches of a touch. `shift`: how far body0 was moved towards body1 to find the touch.
   void read(List& list, SoftTouch& touch, const btVector3& shift);
 
