@@ -55,6 +55,63 @@ TEST_P(SolverBits, OfDrivenJointsAreThoseOfTheCentralRun) {
   std::cout << hand_offs << " hand-offs\n";
 }
 
+/// Tiles and a mesh, side by side, with nothing but air around them. A tile goes down and comes back, if it may move.
+void lay_floor(core::Scene& scene, bool moves) {
+  constexpr double kTile = 1.3;
+  const auto add = [&scene](const core::Shape& shape, const core::Vec3& p) -> core::StaticBody& {
+    scene.shapes.push_back({"piece", shape});
+    core::StaticBody& piece = scene.statics.emplace_back();
+    piece.name = "piece " + std::to_string(scene.statics.size());
+    piece.shape = static_cast<std::uint32_t>(scene.shapes.size() - 1);
+    piece.pose.p_WB = p;
+    return piece;
+  };
+  scene.statics.clear();
+  for (int column = -6; column <= 6; ++column) {
+    for (int row = 0; row <= 6; ++row) {
+      add(core::Box{{kTile / 2, kTile / 2, 0.2}}, {kTile * column, kTile * (row + 0.5), -0.2});
+    }
+  }
+  if (moves) {
+    const core::Quat none = core::Quat::Identity();
+    scene.statics[45].path = core::StaticPath{{{0.7, {{0, 0, -0.5}, none}}, {1.4, {{0, 0, 0}, none}}}, false, true};
+  }
+  core::TriangleMesh mesh;
+  for (int row = 0; row < 9; ++row) {
+    for (int column = -9; column < 9; ++column) {
+      const auto corner = static_cast<std::uint32_t>(mesh.points.size());
+      for (int i = 0; i < 4; ++i) mesh.points.push_back(core::Vec3(column + i % 2, row + i / 2 - 9, 0));
+      mesh.triangles.push_back({corner, corner + 1, corner + 3});
+      mesh.triangles.push_back({corner, corner + 3, corner + 2});
+    }
+  }
+  add(mesh, core::Vec3::Zero());
+}
+
+TEST_P(SolverBits, OfFloorsOfPiecesAreThoseOfTheCentralRun) {
+  std::uint64_t hand_offs = 0;
+  for (int seed = 1; seed <= seeds_or(4); ++seed) {
+    core::Scene scene = thrown_bodies(50, 12, 12, 8, static_cast<std::uint64_t>(seed));
+    scene.materials[0].friction = 0.2;
+    lay_floor(scene, GetParam() == physics::Solver::kSoftStep);
+    ClusterOptions options;
+    options.map = seed % 2 == 0 ? core::RegionMap::grid(2, 2, kCell, kCell) : core::RegionMap::columns(2, kCell);
+    options.sync = core::SyncMode::kDeterministic;
+    options.physics.solver = GetParam();
+    options.physics.continuous = GetParam() == physics::Solver::kSoftStep;
+    options.seed = static_cast<std::uint64_t>(seed);
+    options.aura.lookahead = 1 + seed % 2;
+    options.aura.top_speed_m_s = 40;
+    options.network.loss = 0.05;
+    const Outcome o = CheckedRun(scene, options).run(240);
+    EXPECT_EQ(o.hash, run_central(scene, options, 240).hash) << "seed " << seed;
+    EXPECT_EQ(o.late + o.missed + o.lost + o.doubled, 0u) << "seed " << seed;
+    hand_offs += o.hand_offs;
+  }
+  EXPECT_GT(hand_offs, 0u);
+  std::cout << hand_offs << " hand-offs\n";
+}
+
 INSTANTIATE_TEST_SUITE_P(Solvers, SolverBits,
                          testing::Values(physics::Solver::kSequentialImpulse, physics::Solver::kSoftStep),
                          [](const auto& param) { return std::string(physics::name_of(param.param)); });
