@@ -172,8 +172,7 @@ void InnerEdges::settle() {
   if (is_settled_) return;
   std::vector<core::BoxTree::Box> boxes;
   entries_.clear(), planes_.clear();
-  const auto add = [&](const Fixed& fixed, const FlatPiece* piece, const btCollisionShape& shape,
-                       const btTransform& pose) {
+  const auto add = [&](Fixed& fixed, FlatPiece* piece, const btCollisionShape& shape, const btTransform& pose) {
     btVector3 low, high;
     shape.getAabb(pose, low, high);
     boxes.push_back(box_around(low, high, 0));
@@ -181,10 +180,10 @@ void InnerEdges::settle() {
   };
   for (const std::unique_ptr<Fixed>& one : fixed_) {
     if (one == nullptr) continue;
-    const Fixed& fixed = *one;
+    Fixed& fixed = *one;
     const btCollisionShape& shape = *fixed.object->getCollisionShape();
     if (fixed.is_mesh) add(fixed, nullptr, shape, fixed.start);
-    for (const FlatPiece& piece : fixed.pieces) {
+    for (FlatPiece& piece : fixed.pieces) {
       if (piece.faces.empty()) continue;
       if (shape.getShapeType() == STATIC_PLANE_PROXYTYPE) {
         planes_.push_back(&piece);
@@ -200,7 +199,34 @@ void InnerEdges::settle() {
   for (const std::unique_ptr<Fixed>& fixed : fixed_) {
     if (fixed != nullptr) fixed->has_neighbours = has_neighbours(*fixed);
   }
+  for (std::uint32_t i = 0; i < entries_.size(); ++i) note_covers(i);
   is_settled_ = true;
+}
+
+/// Notes which faces of a piece no other piece can cover, by the pieces' bounds.
+void InnerEdges::note_covers(std::uint32_t entry) {
+  const FlatPiece* const piece = entries_[entry].piece;
+  if (piece == nullptr) return;
+  const core::BoxTree::Box own = (*tree_)[entry];
+  const btVector3 low = to_bullet(own.low), high = to_bullet(own.high);
+  const bool on_plane = meets_plane(low, high);
+  const auto index = static_cast<std::size_t>(piece - entries_[entry].fixed->pieces.data());
+  for (FlatFace& face : entries_[entry].fixed->faces[index]) {
+    face.may_be_covered = on_plane || tree_->any(box_around(low, high, 2 * kJoint_m), [&](std::uint32_t i) {
+      if (i == entry) return false;
+      const btVector3 other_low = to_bullet((*tree_)[i].low), other_high = to_bullet((*tree_)[i].high);
+      const btScalar reach = face.normal.absolute().dot((other_high - other_low) / 2);
+      return face.above((other_low + other_high) / 2) + reach > kJoint_m - 2 * kStep_m;
+    });
+  }
+}
+
+bool InnerEdges::meets_plane(const btVector3& low, const btVector3& high) const {
+  const btVector3 centre = (low + high) / 2, half = (high - low) / 2;
+  return std::ranges::any_of(planes_, [&](const FlatPiece* plane) {
+    const FlatFace& face = plane->faces[0];
+    return face.above(centre) < face.normal.absolute().dot(half) + kJoint_m;
+  });
 }
 
 bool InnerEdges::has_neighbours(const Fixed& fixed) const {
@@ -209,11 +235,7 @@ bool InnerEdges::has_neighbours(const Fixed& fixed) const {
   if (shape.getShapeType() == STATIC_PLANE_PROXYTYPE) return false;
   btVector3 low, high;
   shape.getAabb(fixed.start, low, high);
-  const btVector3 centre = (low + high) / 2, half = (high - low) / 2;
-  for (const FlatPiece* plane : planes_) {
-    const FlatFace& face = plane->faces[0];
-    if (face.above(centre) < face.normal.absolute().dot(half) + kJoint_m) return true;
-  }
+  if (meets_plane(low, high)) return true;
   int met = 0;
   return tree_->any(box_around(low, high, kJoint_m), [&](std::uint32_t) { return ++met > 1; });
 }
@@ -345,12 +367,18 @@ std::optional<StaticContact> InnerEdges::corrected(const StaticContact& found, c
   const FlatPiece* own = &triangle.piece;
   if (of_static.shape.getShapeType() == TRIANGLE_SHAPE_PROXYTYPE) {
     const btVector3* const corners = static_cast<const btTriangleShape&>(of_static.shape).m_vertices1;
+    const btVector3 up = of_static.pose.getBasis() * (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    const btScalar along = up.dot(found.normal);
+    if (along * along > kAlong * kAlong * up.length2()) return found;
     if (!make(triangle, corners, of_static.pose, fixed, index)) return found;
-    if (btFabs(triangle.faces[0].normal.dot(found.normal)) > kAlong) return found;
   } else {
     const auto place = static_cast<std::size_t>(std::max(0, index));
     if (place >= known->pieces.size() || known->pieces[place].faces.empty()) return found;
     own = &known->pieces[place];
+    const bool is_on_face = std::ranges::any_of(own->faces, [&](const FlatFace& face) {
+      return !face.may_be_covered && face.normal.dot(found.normal) > kAlong;
+    });
+    if (is_on_face) return found;
   }
   const std::optional<btVector3> p = on_faces(*own, found);
   if (!p) return found;

@@ -65,14 +65,16 @@ class InnerEdges {
   };
   /// A piece in the tree, or a mesh.
   struct Entry {
-    const Fixed* fixed;
-    const FlatPiece* piece;  ///< null: the mesh
+    Fixed* fixed;
+    FlatPiece* piece;  ///< null: the mesh
   };
   /// Pieces around a point.
   struct Near;
 
   const Fixed* find(const btCollisionObject& fixed) const;
   bool has_neighbours(const Fixed& fixed) const;
+  void note_covers(std::uint32_t entry);
+  bool meets_plane(const btVector3& low, const btVector3& high) const;
   void gather(const btVector3& p, btScalar around_m, Near& near) const;
   bool is_exposed(const FlatPiece& piece, const FlatFace& face, const btVector3& p, const Near& near) const;
   bool is_inner(const StaticContact& found, const FlatPiece& own, const btVector3& p, const Near& near) const;
