@@ -3,9 +3,7 @@
 #include <algorithm>
 
 #include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
-#include <BulletCollision/CollisionShapes/btCapsuleShape.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
-#include <BulletCollision/CollisionShapes/btCylinderShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleShape.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
@@ -26,8 +24,6 @@ constexpr btScalar kRounding_m = btScalar(1e-6);
 constexpr btScalar kAlong = btScalar(0.9999966);
 /// A face whose normal has a smaller product with that of a contact does not take part in it.
 constexpr btScalar kPart = btScalar(1e-3);
-/// How much a search for the lowest point of a body looks towards the contact.
-constexpr btScalar kTowards = btScalar(0.05);
 /// Faces whose normals have a larger product face the same way, so that `kStep_m` holds between them.
 constexpr btScalar kFacing = btScalar(0.7);
 constexpr int kProjections = 20;
@@ -67,12 +63,18 @@ bool make(Triangle& triangle, const btVector3* corners, const btTransform& pose,
   return triangle.faces[0].is_surface;
 }
 
-/// The point where the faces of a piece meet that a contact's normal points away from. Bullet's contact is on the
-/// piece's rounded edge, so faces are compared without the margin.
-std::optional<btVector3> on_faces(const FlatPiece& piece, const StaticContact& contact) {
+/// The point where the faces of a piece meet that a contact's normal points away from, and the edge there.
+struct Feature {
+  btVector3 p;
+  btVector3 along{0, 0, 0};  ///< direction of the edge; 0: a face or a corner
+};
+
+/// Bullet's contact is on the piece's rounded edge, so faces are compared without the margin.
+std::optional<Feature> feature_of(const FlatPiece& piece, const StaticContact& contact) {
   std::array<const FlatFace*, 16> parts;
   std::size_t count = 0;
-  btVector3 p = contact.on_static() - contact.normal * piece.margin_m;
+  Feature feature{contact.on_static() - contact.normal * piece.margin_m};
+  btVector3& p = feature.p;
   const btScalar tolerance = kJoint_m + std::max(btScalar(0), -contact.gap_m);
   for (const FlatFace& face : piece.faces) {
     const bool is_part = face.normal.dot(contact.normal) > kPart && face.above(p) > -piece.margin_m - tolerance;
@@ -82,7 +84,9 @@ std::optional<btVector3> on_faces(const FlatPiece& piece, const StaticContact& c
   for (int i = 0; i < (count == 1 ? 1 : kProjections); ++i) {
     for (std::size_t k = 0; k < count; ++k) p -= parts[k]->normal * parts[k]->above(p);
   }
-  return p;
+  if (count == 2) feature.along = parts[0]->normal.cross(parts[1]->normal);
+  if (!feature.along.fuzzyZero()) feature.along.normalize();
+  return feature;
 }
 
 /// True if the point is on the surface of a piece that faces `up`, or beside it at a joint.
@@ -90,31 +94,6 @@ bool is_at_joint(const FlatPiece& piece, const btVector3& p, const btVector3& up
   return std::ranges::all_of(piece.faces, [&](const FlatFace& face) {
     return face.above(p) <= (face.normal.dot(up) > kFacing ? kStep_m : kJoint_m);
   });
-}
-
-/// A point of the body's surface that is lowest above a face, or nearly so, on the side of its contact point.
-btVector3 lowest(const PlacedShape& body, const btVector3& up, const StaticContact& contact) {
-  const btVector3 centre = body.pose.getOrigin();
-  const btVector3 to_contact = contact.on_body - centre;
-  if (body.shape.getShapeType() == SPHERE_SHAPE_PROXYTYPE) {
-    return centre - up * static_cast<const btConvexShape&>(body.shape).getMargin();
-  }
-  if (body.shape.getShapeType() == CAPSULE_SHAPE_PROXYTYPE) {
-    return contact.on_body + (contact.normal - up) * static_cast<const btCapsuleShape&>(body.shape).getRadius();
-  }
-  if (body.shape.getShapeType() == CYLINDER_SHAPE_PROXYTYPE) {
-    const auto& cylinder = static_cast<const btCylinderShape&>(body.shape);
-    const btVector3 axis = body.pose.getBasis().getColumn(cylinder.getUpAxis());
-    if (btFabs(axis.dot(up)) < btScalar(0.7)) {  // it lies
-      const btScalar half = cylinder.getHalfExtentsWithMargin()[cylinder.getUpAxis()];
-      const btVector3 down = (axis * axis.dot(up) - up).normalized();
-      return centre + axis * std::clamp(to_contact.dot(axis), -half, half) + down * cylinder.getRadius();
-    }
-  }
-  btVector3 aside = to_contact - up * up.dot(to_contact);
-  if (!aside.fuzzyZero()) aside = aside.normalized() * kTowards;
-  const btVector3 direction = body.pose.getBasis().transpose() * (aside - up);
-  return body.pose(static_cast<const btConvexShape&>(body.shape).localGetSupportingVertex(direction));
 }
 
 }  // namespace
@@ -301,15 +280,24 @@ bool InnerEdges::is_exposed(const FlatPiece& piece, const FlatFace& face, const 
   });
 }
 
-/// True if no exposed face or edge of the statics has the normal of a contact at the point p of `own`.
-bool InnerEdges::is_inner(const StaticContact& found, const FlatPiece& own, const btVector3& p,
+/// True if no exposed face or edge of the statics has the normal of a contact at the point p of `own`. An edge counts
+/// as exposed if it is so on one side of p: a post's edge meets the floor at a point, and is a real edge above it.
+bool InnerEdges::is_inner(const StaticContact& found, const FlatPiece& own, const btVector3& p, const btVector3& along,
                           const Near& near) const {
   for (const FlatFace& face : own.faces) {
     const bool is_on = face.is_surface && face.normal.dot(found.normal) > kAlong;
     if (is_on) return !own.is_triangle && !is_exposed(own, face, p, near);
   }
-  return std::ranges::any_of(near.all(), [&](const FlatPiece* other) {
-    return !other->is(own) && is_at_joint(*other, p, found.normal) && rises_above(*other, p, found.normal, kJoint_m);
+  const auto is_covered = [&](const btVector3& there) {
+    return std::ranges::any_of(near.all(), [&](const FlatPiece* other) {
+      return !other->is(own) && is_at_joint(*other, there, found.normal) &&
+             rises_above(*other, there, found.normal, kJoint_m);
+    });
+  };
+  if (!is_covered(p)) return false;
+  if (along.isZero()) return true;
+  return std::ranges::none_of(std::array{p + along * kAround_m, p - along * kAround_m}, [&](const btVector3& there) {
+    return own.holds(there, kRounding_m) && !is_covered(there);
   });
 }
 
@@ -337,7 +325,7 @@ std::optional<StaticContact> InnerEdges::moved(const StaticContact& found, const
   const auto contact_at = [&](const btVector3& on_body) {
     return StaticContact{best->normal, on_body, best->above(on_body)};
   };
-  const StaticContact at_lowest = contact_at(lowest(body, best->normal, found));
+  const StaticContact at_lowest = contact_at(lowest_point(body, best->normal, found.on_body, found.normal));
   const btVector3 below = at_lowest.on_static();
   if (own.holds(below, kStep_m)) return at_lowest;
   Near there;
@@ -380,13 +368,13 @@ std::optional<StaticContact> InnerEdges::corrected(const StaticContact& found, c
     });
     if (is_on_face) return found;
   }
-  const std::optional<btVector3> p = on_faces(*own, found);
-  if (!p) return found;
+  const std::optional<Feature> at = feature_of(*own, found);
+  if (!at) return found;
   Near near;
-  gather(*p, kAround_m + 2 * kJoint_m, near);
+  gather(at->p, kAround_m + 2 * kJoint_m, near);
   const bool is_alone = std::ranges::all_of(near.all(), [&](const FlatPiece* other) { return other->is(*own); });
-  if (is_alone || !is_inner(found, *own, *p, near)) return found;
-  return moved(found, *own, *p, of_body, near);
+  if (is_alone || !is_inner(found, *own, at->p, at->along, near)) return found;
+  return moved(found, *own, at->p, of_body, near);
 }
 
 }  // namespace aurasim::physics

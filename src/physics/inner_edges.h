@@ -16,10 +16,9 @@
 
 #include "core/box_tree.h"
 #include "physics/flat_piece.h"
+#include "physics/lowest_point.h"
 
 class btCollisionObject;
-class btCollisionShape;
-class btConvexShape;
 
 namespace aurasim::physics {
 
@@ -30,12 +29,6 @@ struct StaticContact {
   btScalar gap_m = 0;  ///< negative: overlap
 
   btVector3 on_static() const { return on_body - normal * gap_m; }
-};
-
-/// A convex shape of a body, or of a static, at its pose.
-struct PlacedShape {
-  const btCollisionShape& shape;
-  const btTransform& pose;
 };
 
 class InnerEdges {
@@ -77,7 +70,8 @@ class InnerEdges {
   bool meets_plane(const btVector3& low, const btVector3& high) const;
   void gather(const btVector3& p, btScalar around_m, Near& near) const;
   bool is_exposed(const FlatPiece& piece, const FlatFace& face, const btVector3& p, const Near& near) const;
-  bool is_inner(const StaticContact& found, const FlatPiece& own, const btVector3& p, const Near& near) const;
+  bool is_inner(const StaticContact& found, const FlatPiece& own, const btVector3& p, const btVector3& along,
+                const Near& near) const;
   std::optional<StaticContact> moved(const StaticContact& found, const FlatPiece& own, const btVector3& p,
                                      const PlacedShape& body, const Near& near) const;
 

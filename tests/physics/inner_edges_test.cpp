@@ -1,10 +1,17 @@
 // Edges between neighbouring statics neither brake a body nor trip it up, and real edges stay (physics/inner_edges.h).
+#include "physics/inner_edges.h"
+
 #include <cmath>
+#include <memory>
+#include <numbers>
+#include <optional>
 #include <random>
 #include <string>
-#include <tuple>
 #include <vector>
 
+#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
+#include <BulletCollision/CollisionShapes/btSphereShape.h>
 #include <gtest/gtest.h>
 
 #include "physics/joint_scenes.h"
@@ -14,67 +21,6 @@ namespace aurasim::physics::testing {
 namespace {
 
 using core::Vec3;
-
-core::BodyRecord record_of(const Slider& slider, const Vec3& p, const Vec3& v) {
-  core::BodyRecord record = body(1, 0, p, v);
-  record.R_WB = slider.q.toRotationMatrix();
-  return record;
-}
-
-struct Slid {
-  double way_m = 0;   ///< along x
-  double high_m = 0;  ///< greatest height above the floor
-};
-
-/// Two seconds, from 8 m/s along x.
-Slid slide(const Slider& slider, const Settings& settings, const Floor& floor) {
-  core::Scene scene = scene_of_slider(slider.shape);
-  floor.add(scene);
-  RegionWorld world(scene, settings);
-  const Vec3 start(0.13, 0.21, slider.height_m);
-  world.add(std::vector{record_of(slider, start, {8, 0, 0})});
-  Slid result;
-  for (int i = 0; i < 120; ++i) {
-    world.step();
-    result.high_m = std::max(result.high_m, world.records()[0].p_WB.z() - start.z());
-  }
-  result.way_m = world.records()[0].p_WB.x() - start.x();
-  return result;
-}
-
-class InnerEdgesOf : public ::testing::TestWithParam<std::tuple<std::size_t, std::size_t>> {
- protected:
-  const Floor& floor() const {
-    static const std::vector<Floor> floors = floors_of_pieces();
-    return floors[std::get<0>(GetParam())];
-  }
-  const Slider& slider() const {
-    static const std::vector<Slider> all = sliders();
-    return all[std::get<1>(GetParam())];
-  }
-};
-
-const Floor kOneFloor{"One", add_one_floor};
-
-TEST_P(InnerEdgesOf, BrakeNobody) {
-  const Slid one = slide(slider(), balanced(), kOneFloor), pieces = slide(slider(), balanced(), floor());
-  EXPECT_NEAR(pieces.way_m, one.way_m, 0.01 * one.way_m);
-  EXPECT_LT(pieces.high_m, 0.025);  // trips lift it by 0.08 m and more
-}
-
-TEST_P(InnerEdgesOf, BrakeNobodyWithBulletsSolver) {
-  const Slid one = slide(slider(), exact(), kOneFloor), pieces = slide(slider(), exact(), floor());
-  EXPECT_NEAR(pieces.way_m, one.way_m, 0.01 * one.way_m);
-  EXPECT_LT(pieces.high_m, 0.025);  // trips lift it by 0.08 m and more
-}
-
-INSTANTIATE_TEST_SUITE_P(Floors, InnerEdgesOf,
-                         ::testing::Combine(::testing::Range<std::size_t>(0, floors_of_pieces().size()),
-                                            ::testing::Range<std::size_t>(0, sliders().size())),
-                         [](const auto& param) {
-                           return floors_of_pieces()[std::get<0>(param.param)].name + "Below" +
-                                  sliders()[std::get<1>(param.param)].name;
-                         });
 
 /// Runs a body and returns where it is then.
 core::BodyRecord after(const core::Scene& scene, const core::BodyRecord& start, int steps) {
@@ -227,6 +173,76 @@ TEST(InnerEdges, AnOutsideCornerOfTwoWallsTurnsABallAside) {
   EXPECT_LT(ball.v_WB.norm(), 4.5);  // it lost the speed towards the corner
   const core::BodyRecord past = after(scene, body(1, 0, {-1, -1.5, 0.1}, {4, 0, 0}), 60);
   EXPECT_NEAR(past.v_WB.x(), 4, 1e-6);
+}
+
+/// A post stands on the floor with an edge ahead. A box that slides against it does not turn aside.
+TEST(InnerEdges, ThePostsEdgeStopsABox) {
+  for (const bool hull : {false, true}) {
+    for (const bool tiled : {false, true}) {
+      core::Scene scene = scene_of_slider(core::Box{{0.25, 0.25, 0.25}});
+      const Vec3 half(0.2, 0.2, 0.5);
+      const core::Shape post = hull ? core::Shape(hull_of_box(half)) : core::Shape(core::Box{half});
+      add_static(scene, post, {Vec3(2, 0, 0.5), turned(Vec3::UnitZ(), std::numbers::pi / 4)});
+      if (tiled) add_tiles(scene, {});
+      if (!tiled) add_one_floor(scene);
+      const core::BodyRecord box = after(scene, body(1, 0, {1, 0, 0.25}, {4, 0, 0}), 60);
+      EXPECT_LT(box.p_WB.x(), 2 - 0.2 * std::numbers::sqrt2 - 0.24) << hull << tiled;
+      EXPECT_LT(std::abs(box.p_WB.y()), 0.06) << hull << tiled;
+      EXPECT_GT(box.R_WB(2, 2), 0.99) << hull << tiled;
+    }
+  }
+}
+
+/// Statics of boxes, and what becomes of a ball's contact with one of them.
+struct Boxes {
+  void add(const btVector3& half, const btVector3& p, btScalar yaw_rad = 0) {
+    shapes.push_back(std::make_unique<btBoxShape>(half));
+    btCollisionObject& made = *objects.emplace_back(std::make_unique<btCollisionObject>());
+    made.setCollisionShape(shapes.back().get());
+    made.setWorldTransform(btTransform(btQuaternion(btVector3(0, 0, 1), yaw_rad), p));
+    made.setUserIndex(-static_cast<int>(objects.size()));
+    edges.insert(made, made.getWorldTransform());
+    edges.settle();
+  }
+  std::optional<StaticContact> corrected(std::size_t i, const btVector3& normal, const btVector3& p) const {
+    const btSphereShape ball(btScalar(0.3));
+    const btTransform pose(btMatrix3x3::getIdentity(), p + normal * btScalar(0.3));
+    const StaticContact found{normal, p, 0};
+    return edges.corrected(found, *objects[i], -1, {*shapes[i], objects[i]->getWorldTransform()}, {ball, pose});
+  }
+
+  std::vector<std::unique_ptr<btBoxShape>> shapes;
+  std::vector<std::unique_ptr<btCollisionObject>> objects;
+  InnerEdges edges;
+};
+
+TEST(InnerEdges, AnEdgeThatEndsOnTheFloorIsReal) {
+  Boxes boxes;
+  boxes.add({10, 10, 1}, {0, 0, -1});
+  boxes.add({btScalar(0.2), btScalar(0.2), btScalar(0.5)}, {0, 0, btScalar(0.5)}, SIMD_PI / 4);
+  EXPECT_TRUE(boxes.edges.concerns(*boxes.objects[1]));
+  for (const double z : {0.0, 0.3}) {
+    const btVector3 p(btScalar(-0.2 * std::numbers::sqrt2), 0, btScalar(z));
+    const auto contact = boxes.corrected(1, {-1, 0, 0}, p);
+    ASSERT_TRUE(contact) << z;
+    EXPECT_EQ(contact->normal.x(), -1) << z;
+  }
+}
+
+TEST(InnerEdges, AnEdgeOfATileIsRealWhereNoTileIsBesideIt) {
+  Boxes boxes;
+  boxes.add({1, 1, 1}, {0, 0, -1});
+  const btVector3 back(btScalar(-0.6), 0, btScalar(0.8)), edge(-1, 0, 0);
+  EXPECT_FALSE(boxes.edges.concerns(*boxes.objects[0]));
+  boxes.add({1, 1, 1}, {2, 0, -1});  // on the other side
+  ASSERT_TRUE(boxes.corrected(0, back, edge));
+  EXPECT_EQ(boxes.corrected(0, back, edge)->normal.x(), back.x());
+  boxes.add({1, 1, 1}, {-2, 0, -1});
+  EXPECT_FALSE(boxes.corrected(0, back, edge));  // the new tile has this contact
+  EXPECT_FALSE(boxes.corrected(0, {-1, 0, 0}, edge));
+  boxes.edges.remove(*boxes.objects[2]);
+  boxes.edges.settle();
+  EXPECT_TRUE(boxes.corrected(0, back, edge));
 }
 
 /// Two slabs that lean against each other. Upside down they make up a groove.

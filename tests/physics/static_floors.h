@@ -100,6 +100,8 @@ inline void add_one_floor(core::Scene& scene) {
   add_static(scene, core::Box{{50, 50, 0.25}}, {core::Vec3(0, 0, -0.25), core::Quat::Identity()});
 }
 
+inline const Floor kOneFloor{"One", add_one_floor};
+
 /// Level floors of many pieces, from x = -2 m to at least x = 20 m.
 inline std::vector<Floor> floors_of_pieces() {
   const auto tiles = [](const Tiling& tiling) { return [tiling](core::Scene& scene) { add_tiles(scene, tiling); }; };
@@ -176,6 +178,12 @@ inline std::vector<Slider> sliders() {
           {"HullOfABox", hull_of_box({0.25, 0.25, 0.2}), 0.2},
           {"Sled", sled, 0.1},
           {"FourBalls", four_balls, 0.1}};
+}
+
+inline core::BodyRecord record_of(const Slider& slider, const core::Vec3& p, const core::Vec3& v) {
+  core::BodyRecord record = body(1, 0, p, v);
+  record.R_WB = slider.q.toRotationMatrix();
+  return record;
 }
 
 /// A scene of one kind of body, friction 0.1 against statics, without statics.
