@@ -27,6 +27,8 @@ constexpr btScalar kPart = btScalar(1e-3);
 /// Faces whose normals have a larger product face the same way, so that `kStep_m` holds between them.
 constexpr btScalar kFacing = btScalar(0.7);
 constexpr int kProjections = 20;
+/// After more changes at once, all statics are looked at again instead of those near the changes.
+constexpr std::size_t kManyChanges = 32;
 
 bool takes_part(const btCollisionObject& fixed, const btTransform& start) {
   if (!is_moving_static(fixed)) return true;
@@ -46,6 +48,12 @@ std::size_t number_of(const btCollisionObject& fixed) { return static_cast<std::
 core::BoxTree::Box box_around(const btVector3& low, const btVector3& high, btScalar more_m) {
   const core::Vec3 more = core::Vec3::Constant(static_cast<double>(more_m));
   return {from_bullet(low) - more, from_bullet(high) + more};
+}
+
+core::BoxTree::Box box_around(const btCollisionObject& object, const btTransform& pose, btScalar more_m) {
+  btVector3 low, high;
+  object.getCollisionShape()->getAabb(pose, low, high);
+  return box_around(low, high, more_m);
 }
 
 /// A triangle near a contact.
@@ -139,16 +147,17 @@ void InnerEdges::insert(const btCollisionObject& fixed, const btTransform& start
   const std::size_t number = number_of(fixed);
   if (fixed_.size() <= number) fixed_.resize(number + 1);
   fixed_[number] = std::move(owned);
-  is_settled_ = false;
+  changed_.push_back(box_around(fixed, start, 4 * kJoint_m));
 }
 
 void InnerEdges::remove(const btCollisionObject& fixed) {
-  fixed_[number_of(fixed)].reset();
-  is_settled_ = false;
+  std::unique_ptr<Fixed>& leaving = fixed_[number_of(fixed)];
+  changed_.push_back(box_around(fixed, leaving->start, 4 * kJoint_m));
+  leaving.reset();
 }
 
 void InnerEdges::settle() {
-  if (is_settled_) return;
+  if (changed_.empty()) return;
   std::vector<core::BoxTree::Box> boxes;
   entries_.clear(), planes_.clear();
   const auto add = [&](Fixed& fixed, FlatPiece* piece, const btCollisionShape& shape, const btTransform& pose) {
@@ -175,11 +184,19 @@ void InnerEdges::settle() {
     }
   }
   tree_.emplace(std::move(boxes));
+  const auto has_changed = [&](const core::BoxTree::Box& box) {
+    return changed_.size() > kManyChanges ||
+           std::ranges::any_of(changed_, [&](const core::BoxTree::Box& there) { return there.meets(box); });
+  };
   for (const std::unique_ptr<Fixed>& fixed : fixed_) {
-    if (fixed != nullptr) fixed->has_neighbours = has_neighbours(*fixed);
+    if (fixed != nullptr && has_changed(box_around(*fixed->object, fixed->start, 0))) {
+      fixed->has_neighbours = has_neighbours(*fixed);
+    }
   }
-  for (std::uint32_t i = 0; i < entries_.size(); ++i) note_covers(i);
-  is_settled_ = true;
+  for (std::uint32_t i = 0; i < entries_.size(); ++i) {
+    if (has_changed((*tree_)[i])) note_covers(i);
+  }
+  changed_.clear();
 }
 
 /// Notes which faces of a piece no other piece can cover, by the pieces' bounds.

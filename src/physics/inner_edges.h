@@ -78,8 +78,8 @@ class InnerEdges {
   std::vector<std::unique_ptr<Fixed>> fixed_;  ///< by number of the static; null where it is not in the world
   std::vector<Entry> entries_;
   std::vector<const FlatPiece*> planes_;
-  std::optional<core::BoxTree> tree_;  ///< of entries_
-  bool is_settled_ = true;
+  std::optional<core::BoxTree> tree_;        ///< of entries_
+  std::vector<core::BoxTree::Box> changed_;  ///< where statics came or went since settle()
 };
 
 }  // namespace aurasim::physics
