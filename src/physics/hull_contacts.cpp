@@ -101,8 +101,8 @@ class HullContacts final : public btCollisionAlgorithm {
     }
   }
 
-  /// True if a point was moved to `on_b`, where the pair has one already. Several points on an inner edge can be moved to
-  /// one place.
+  /// True if a point was moved to `on_b`, where the pair has one already. Several points on an inner edge can be moved
+  /// to one place.
   bool is_there(const btVector3& on_b, const PointOnB& found) const {
     const btScalar near2 = static_cast<btScalar>(margin_ * margin_);
     if (on_b.distance2(found.on_b) == 0) return false;

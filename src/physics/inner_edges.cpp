@@ -57,13 +57,13 @@ core::BoxTree::Box box_around(const btCollisionObject& object, const btTransform
 }
 
 /// A triangle near a contact.
-struct Triangle {
+struct MeshTriangle {
   std::array<FlatFace, 5> faces;
   FlatPiece piece;
 };
 
 /// Sets the piece of a triangle. Returns false if it has no area.
-bool make(Triangle& triangle, const btVector3* corners, const btTransform& pose, const btCollisionObject& mesh,
+bool make(MeshTriangle& triangle, const btVector3* corners, const btTransform& pose, const btCollisionObject& mesh,
           int index) {
   const btVector3 in_world[3] = {pose(corners[0]), pose(corners[1]), pose(corners[2])};
   triangle.faces = faces_of_triangle(in_world);
@@ -110,7 +110,7 @@ struct InnerEdges::Near {
   static constexpr std::size_t kMost = 24;
   std::array<const FlatPiece*, kMost> pieces;
   std::size_t count = 0;
-  std::array<Triangle, kMost> triangles;
+  std::array<MeshTriangle, kMost> triangles;
   std::size_t triangle_count = 0;
 
   void add(const FlatPiece& piece) {
@@ -246,7 +246,7 @@ void InnerEdges::gather(const btVector3& p, btScalar around_m, Near& near) const
     AddTriangles(Near& to, const Fixed& of) : near(to), mesh(of) {}
     void processTriangle(btVector3* corners, int, int index) override {
       if (near.triangle_count == Near::kMost) return;
-      Triangle& triangle = near.triangles[near.triangle_count];
+      MeshTriangle& triangle = near.triangles[near.triangle_count];
       if (!make(triangle, corners, mesh.start, *mesh.object, index)) return;
       ++near.triangle_count;
       near.add(triangle.piece);
@@ -368,7 +368,7 @@ std::optional<StaticContact> InnerEdges::corrected(const StaticContact& found, c
                                                    const PlacedShape& of_body) const {
   const Fixed* const known = find(fixed);
   if (known == nullptr || !of_body.shape.isConvex() || !takes_part(fixed, known->start)) return found;
-  Triangle triangle;
+  MeshTriangle triangle;
   const FlatPiece* own = &triangle.piece;
   if (of_static.shape.getShapeType() == TRIANGLE_SHAPE_PROXYTYPE) {
     const btVector3* const corners = static_cast<const btTriangleShape&>(of_static.shape).m_vertices1;

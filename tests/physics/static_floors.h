@@ -35,7 +35,7 @@ inline core::ConvexHull hull_of_box(const core::Vec3& half) {
 }
 
 /// An upright prism.
-inline core::ConvexHull prism(int corners, double radius, double height) {
+inline core::ConvexHull prism_hull(int corners, double radius, double height) {
   core::ConvexHull hull;
   for (int i = 0; i < corners; ++i) {
     const double angle = 2 * std::numbers::pi * (i + 0.5) / corners;
@@ -174,7 +174,7 @@ inline std::vector<Slider> sliders() {
           {"CapsuleAcross", core::Capsule{0.2, 0.4}, 0.2, across},
           {"StandingCylinder", core::Cylinder{0.3, 0.4}, 0.2},
           {"RollingCylinder", core::Cylinder{0.3, 0.4}, 0.3, across},
-          {"Prism", prism(7, 0.3, 0.3), 0.15},
+          {"Prism", prism_hull(7, 0.3, 0.3), 0.15},
           {"HullOfABox", hull_of_box({0.25, 0.25, 0.2}), 0.2},
           {"Sled", sled, 0.1},
           {"FourBalls", four_balls, 0.1}};
