@@ -211,6 +211,7 @@ void add_physics(const Launch& launch, Digest& d) {
   d.bytes(static_cast<std::uint64_t>(launch.physics.friction_directions));
   d.add(launch.physics.contact_erp);
   d.bytes(launch.physics.is_continuous());
+  d.add(launch.block_m());
 }
 
 /// Adds the other settings that all nodes must agree on.

@@ -17,6 +17,7 @@
 #include "config/region_layout.h"
 #include "config/scene_file.h"
 #include "config/shipped_files.h"
+#include "core/block.h"
 #include "core/fnv1a.h"
 #include "core/usual_uncertainty.h"
 
@@ -207,6 +208,8 @@ int Launch::lookahead() const {
   const double steps = (tolerances.frame_s + tolerances.latency_s) * time.step_hz;
   return std::max(1, static_cast<int>(std::ceil(steps - 1e-9)));  // a tolerance of exactly one step is one step
 }
+
+double Launch::block_m() const { return physics.block_m ? *physics.block_m : core::usual_block_m(scene); }
 
 Launch read_launch(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   Errors errors;

@@ -53,6 +53,7 @@ struct Physics {
   int friction_directions = 1;     ///< rows of friction at each contact point, 1 or 2
   double contact_erp = 0.2;        ///< share of an overlap undone in each substep, by a speed that remains
   std::optional<bool> continuous;  ///< fast bodies stop at obstacles; nothing: yes where contacts are found once a step
+  std::optional<double> block_m;   ///< side of the blocks; nothing: by the bodies of the scene
   std::optional<int> threads = 1;  ///< threads of a node's physics; nothing: as many as the host has for it
 };
 
@@ -151,6 +152,8 @@ struct Launch {
   double step_s() const { return 1.0 / time.step_hz; }
   /// K of docs/design.md, "Time and lookahead".
   int lookahead() const;
+  /// Side of the blocks, m.
+  double block_m() const;
   /// U of docs/design.md, "Swept auras".
   double uncertainty() const;
   /// True when every state is checked, and computed again where two bodies touched on two hosts.

@@ -8,6 +8,7 @@
 #include "config/launch_checks.h"
 #include "config/presets.h"
 #include "config/region_layout.h"
+#include "core/block.h"
 
 namespace aurasim::config {
 namespace {
@@ -108,6 +109,11 @@ const KeysOf<Physics>& physics_keys() {
           optional("continuous", &Physics::continuous, flag().or_word("auto"),
                    "continuous collision detection: fast bodies stop at what is in their way instead of passing "
                    "through what is thin; auto: with soft_step")
+              .usual("auto"),
+          optional("block", &Physics::block_m,
+                   number(Range::from_to(core::kSmallestBlock_m, core::kLargestBlock_m), "m").or_word("auto"),
+                   "side of the square columns into which the world is cut; contacts inside a column are solved before "
+                   "those between columns. auto: 16, or as much as the sizes of the scene's bodies need")
               .usual("auto"),
           optional("threads", &Physics::threads, integer(1, 64).or_word("auto"),
                    "of each node's soft_step; their number changes no bit. auto: the host's cores, shared among the "

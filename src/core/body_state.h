@@ -3,7 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <compare>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -64,6 +66,15 @@ struct Snapshot {
   std::vector<Contact> joints;    ///< pairs of bodies held together by a joint
 };
 
+/// Indices of a block's columns along x and y (core/block.h).
+struct Block {
+  std::int32_t x = std::numeric_limits<std::int32_t>::min();  ///< not known yet, if it is this
+  std::int32_t y = 0;
+
+  bool is_known() const { return x != Block{}.x; }
+  auto operator<=>(const Block&) const = default;
+};
+
 /// Full dynamic state of one body: all that a new host needs to compute the next state with the same bits. The rotation
 /// is a matrix because that is what Bullet integrates; a quaternion would round it.
 struct BodyRecord {
@@ -77,6 +88,7 @@ struct BodyRecord {
   Mat3 R_WB = Mat3::Identity();
   Vec3 v_WB = Vec3::Zero();
   Vec3 w_WB = Vec3::Zero();
+  Block block = {};  ///< if it is not known, it is that of the centre
 };
 
 /// The body of a record as the protocol sees it. `awake` is true unless the body sleeps (2) or is disabled (5).

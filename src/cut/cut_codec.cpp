@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr char kMagic[] = "AURACUT2";  // the last character is the number of the format
+constexpr char kMagic[] = "AURACUT3";  // the last character is the number of the format
 constexpr std::size_t kMagicBytes = 8, kFormatAt = 7;
 constexpr int kLevel = 3;
 constexpr std::size_t kMostBytes = std::size_t{2} << 30U;  // uncompressed: some ten million contact points

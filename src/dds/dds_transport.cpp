@@ -131,7 +131,8 @@ messages::Expected expected_of(const TransportSettings& settings) {
           .region_count = settings.region_count,
           .prototype_count = settings.prototype_count,
           .static_count = settings.static_count,
-          .joint_count = settings.joint_count};
+          .joint_count = settings.joint_count,
+          .block_m = settings.block_m};
 }
 
 void check_settings(const TransportSettings& settings) {

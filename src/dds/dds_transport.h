@@ -29,6 +29,7 @@ struct TransportSettings {
   std::uint32_t prototype_count = 0xffff'ffffU;
   std::uint32_t static_count = 0xffff'ffffU;
   std::uint32_t joint_count = 0xffff'ffffU;
+  double block_m = 0;  ///< side of the blocks; 0: not known, so blocks are not checked
   /// True when that region's node is alive but has been computing one step for long. Waiting to be matched by it then
   /// goes on until that step is done. Empty: no node counts as busy.
   std::function<bool(core::RegionId)> is_busy = {};

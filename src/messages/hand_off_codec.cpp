@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "aurasim.h"
+#include "core/block.h"
 #include "messages/bearable.h"
 #include "messages/codec.h"
 #include "messages/columns.h"
@@ -35,6 +36,7 @@ void encode_bodies(const std::vector<core::BodyRecord>& bodies, wire::Migration&
   });
   fill_wide<3>(out.body_v_WB(), bodies, [](const Body& b, double* to) { put_vector(b.v_WB, to); });
   fill_wide<3>(out.body_w_WB(), bodies, [](const Body& b, double* to) { put_vector(b.w_WB, to); });
+  fill_wide<2>(out.body_block(), bodies, [](const Body& b, std::int32_t* to) { to[0] = b.block.x, to[1] = b.block.y; });
 }
 
 void encode_memory(const core::ClusterState& cluster, wire::Migration& out) {
@@ -66,7 +68,8 @@ MaybeError check_shape(const wire::Migration& in) {
                                        {in.body_p_WB().size(), 3},
                                        {in.body_R_WB().size(), 9},
                                        {in.body_v_WB().size(), 3},
-                                       {in.body_w_WB().size(), 3}}) &&
+                                       {in.body_w_WB().size(), 3},
+                                       {in.body_block().size(), 2}}) &&
                     same_rows(manifolds, {{in.manifold_object1().size()},
                                           {in.manifold_first_point().size()},
                                           {in.manifold_point_count().size()}}) &&
@@ -118,6 +121,17 @@ bool known_objects(const wire::Migration& in, const Expected& expected) {
   return true;
 }
 
+/// True when a block is not known, or lies where a body may be.
+bool are_bearable_blocks(const std::vector<std::int32_t>& blocks) {
+  constexpr auto kMost = static_cast<std::int64_t>(bearable::kFarthest_m / core::kSmallestBlock_m);
+  for (std::size_t i = 0; i < blocks.size(); i += 2) {
+    const core::Block block{blocks[i], blocks[i + 1]};
+    if (block.is_known() && (std::abs(std::int64_t{block.x}) > kMost || std::abs(std::int64_t{block.y}) > kMost))
+      return false;
+  }
+  return true;
+}
+
 /// True when all quantities are within messages/bearable.h.
 bool are_bearable(const wire::Migration& in) {
   using namespace bearable;
@@ -131,7 +145,8 @@ bool are_bearable(const wire::Migration& in) {
   return all_within(in.body_p_WB(), kFarthest_m) && all_within(in.body_v_WB(), kFastest_m_s) &&
          all_within(in.body_w_WB(), kFastestSpin_rad_s) &&
          all_within(in.body_deactivation_time(), kLargestOfAContact) && all_within(in.points(), kLargestOfAContact) &&
-         all_within(in.joint_values(), kLargestOfAContact) && all_below(in.body_epoch(), kMostEpochs);
+         all_within(in.joint_values(), kLargestOfAContact) && all_below(in.body_epoch(), kMostEpochs) &&
+         are_bearable_blocks(in.body_block());
 }
 
 MaybeError check_values(const wire::Migration& in, const Expected& expected) {
@@ -186,7 +201,8 @@ core::BodyRecord body_at(const wire::Migration& in, std::size_t i) {
           .p_WB = vector_at(in.body_p_WB(), i),
           .R_WB = Eigen::Map<const RowMajor>(in.body_R_WB().data() + 9 * i),
           .v_WB = vector_at(in.body_v_WB(), i),
-          .w_WB = vector_at(in.body_w_WB(), i)};
+          .w_WB = vector_at(in.body_w_WB(), i),
+          .block = {in.body_block()[2 * i], in.body_block()[2 * i + 1]}};
 }
 
 core::ClusterState cluster_of(const wire::Migration& in) {
@@ -233,6 +249,10 @@ Decoded<HandOff> decode(const wire::Migration& in, const Expected& expected) {
   if (const auto error = check(in, expected)) {
     return *error;
   }
+  core::ClusterState cluster = cluster_of(in);
+  if (expected.block_m > 0 && !core::blocks_are_near(cluster.bodies, expected.block_m)) {
+    return WireError::kRange;
+  }
   return HandOff{.source = static_cast<RegionId>(in.source()),
                  .destination = static_cast<RegionId>(in.destination()),
                  .generation = in.generation(),
@@ -241,7 +261,7 @@ Decoded<HandOff> decode(const wire::Migration& in, const Expected& expected) {
                  .map_version = in.map_version(),
                  .sequence = in.sequence_number(),
                  .reason = static_cast<core::HandOffReason>(in.reason()),
-                 .cluster = cluster_of(in)};
+                 .cluster = std::move(cluster)};
 }
 
 void encode(const HandOffAck& ack, std::uint64_t map_version, wire::MigrationAck& out) {

@@ -13,7 +13,7 @@
 namespace aurasim::messages {
 
 /// The number that every message carries. Changes with any change of idl/.
-inline constexpr std::uint16_t kProtocolVersion = 17;
+inline constexpr std::uint16_t kProtocolVersion = 18;
 
 /// Bodies, manifolds, ... in one message; more are refused.
 inline constexpr std::size_t kMaxRows = 1'000'000;
@@ -59,6 +59,7 @@ struct Expected {
   std::uint32_t prototype_count = 0xffff'ffffU;
   std::uint32_t static_count = 0xffff'ffffU;
   std::uint32_t joint_count = 0xffff'ffffU;
+  double block_m = 0;  ///< side of the blocks; 0: not known, so blocks are not checked
 };
 
 }  // namespace aurasim::messages

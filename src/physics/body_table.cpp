@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "physics/bullet_convert.h"
+#include "physics/moving_body.h"
 
 namespace aurasim::physics {
 namespace {
@@ -24,6 +25,7 @@ core::BodyRecord HostedBody::record() const {
   record.R_WB = from_bullet(rigid->getWorldTransform().getBasis());
   record.v_WB = from_bullet(rigid->getLinearVelocity());
   record.w_WB = from_bullet(rigid->getAngularVelocity());
+  record.block = place_of(*rigid).block;
   return record;
 }
 

@@ -17,7 +17,7 @@ struct HostedBody {
   core::PrototypeId prototype{};
   core::Step birth = 0;
   bool born = false;                   ///< true: the body is in Bullet's world
-  std::unique_ptr<btRigidBody> rigid;  ///< its user index is its place in the table
+  std::unique_ptr<btRigidBody> rigid;  ///< a MovingBody; its user index is its place in the table
 
   core::BodyRecord record() const;
   core::BodyState state() const;

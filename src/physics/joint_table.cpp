@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <tuple>
+#include <utility>
 
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 
@@ -145,6 +146,7 @@ void JointTable::connect(core::JointId id, BodyTable& bodies, DynamicsWorld& wor
   begin(entry);
   world.connect(*entry.constraint, static_cast<int>(core::value_of(id)), joint.collide || !joint.b);
   connected_.insert(std::lower_bound(connected_.begin(), connected_.end(), id), id);
+  mechanisms_are_old_ = true;
 }
 
 /// Gives a joint's constraint the state that its entry has.
@@ -170,6 +172,7 @@ void JointTable::put_back(const core::ClusterState& then, BodyTable& bodies, Dyn
 void JointTable::disconnect(Entry& entry, DynamicsWorld& world) {
   world.disconnect(*entry.constraint);
   entry.constraint.reset();
+  mechanisms_are_old_ = true;
 }
 
 void JointTable::disconnect(const core::ClusterState& leaving, BodyTable& bodies, DynamicsWorld& world) {
@@ -296,6 +299,12 @@ std::uint64_t JointTable::append_to(core::ClusterState& cluster) const {
     if (entry.constraint && joint.b && !(has(cluster, joint.a) && has(cluster, *joint.b))) ++across;
   }
   return across;
+}
+
+bool JointTable::mechanisms_changed() {
+  if (!std::exchange(mechanisms_are_old_, false)) return false;
+  mechanisms_ = core::mechanisms_of(scene_->joints, connected_);
+  return true;
 }
 
 void JointTable::list_pairs(const BodyTable& bodies, std::vector<core::Contact>& pairs) const {

@@ -12,6 +12,7 @@
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include "core/mechanisms.h"
 #include "core/scene.h"
 #include "physics/body_table.h"
 #include "physics/constraints.h"
@@ -57,6 +58,11 @@ class JointTable {
   /// joints that also hold a body here outside the cluster.
   std::uint64_t append_to(core::ClusterState& cluster) const;
 
+  /// The mechanisms that the joints in Bullet's world make.
+  const std::vector<core::BoundBody>& mechanisms() const { return mechanisms_; }
+  /// Updates mechanisms(). Returns false if they have been up to date.
+  bool mechanisms_changed();
+
   /// Lists the pairs of bodies that joints hold together here, by place in the table, in order.
   void list_pairs(const BodyTable& bodies, std::vector<core::Contact>& pairs) const;
 
@@ -93,7 +99,9 @@ class JointTable {
   std::vector<Entry> entries_;                                              ///< by joint of Scene::joints
   std::unordered_map<core::BodyId, std::vector<core::JointId>> joints_of_;  ///< only looked up by id, never iterated
   std::vector<core::JointId> connected_;                                    ///< ascending
-  std::vector<Follower> followers_;                                         ///< ascending
+  std::vector<core::BoundBody> mechanisms_;
+  bool mechanisms_are_old_ = false;
+  std::vector<Follower> followers_;      ///< ascending
   std::unique_ptr<btRigidBody> ground_;  ///< second body of joints to the world; in no Bullet world
 };
 

@@ -1,6 +1,7 @@
 // Settings of the simulation. They have to be the same on all nodes of a run.
 #pragma once
 
+#include "core/block.h"
 #include "core/body_state.h"
 #include "core/limits.h"
 
@@ -20,6 +21,8 @@ struct Settings {
   int looks() const { return looks_once() ? 1 : substeps; }
   Solver solver = Solver::kSequentialImpulse;
   int solver_iterations = 10;
+  /// Side of the blocks (core/block.h), m.
+  double block_m = core::kUsualBlock_m;
   /// Number of threads of the soft step. It changes no bit.
   int threads = 1;
   /// Share of an overlap that contacts undo in a substep; the speed of that push stays (Bullet's error reduction

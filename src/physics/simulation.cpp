@@ -14,6 +14,7 @@
 #include "core/progress.h"
 #include "physics/bullet_convert.h"
 #include "physics/construction.h"
+#include "physics/moving_body.h"
 #include "physics/part_surfaces.h"
 #include "physics/prefetch.h"
 
@@ -83,7 +84,7 @@ HostedBody Simulation::make_body(const core::BodyRecord& record) const {
   auto info = construction_of(prototype.mass_kg, shapes_->shape(prototype.shape), shapes_->inertia(record.prototype),
                               scene_->materials.at(prototype.material));
 
-  HostedBody body{record.id, record.epoch, record.prototype, record.birth, false, std::make_unique<btRigidBody>(info)};
+  HostedBody body{record.id, record.epoch, record.prototype, record.birth, false, std::make_unique<MovingBody>(info)};
   body.rigid->setFlags(0);  // no gyroscopic torque: see free_rotation.h
   use_part_surfaces(*body.rigid);
   if (settings_.continuous) {
@@ -105,11 +106,13 @@ void Simulation::set_motion(btRigidBody& rigid, const core::BodyRecord& record) 
   const bool keeps_state = can_sleep || record.activation_state == DISABLE_SIMULATION;
   rigid.forceActivationState(keeps_state ? record.activation_state : DISABLE_DEACTIVATION);
   rigid.setDeactivationTime(static_cast<btScalar>(record.deactivation_time));
+  place_of(rigid).block = record.block.is_known() ? record.block : core::block_at(record.p_WB, settings_.block_m);
 }
 
 void Simulation::add(std::span<const core::BodyRecord> bodies) {
   put_in(bodies);
   insert_born();
+  settle_blocks();
 }
 
 void Simulation::put_in(std::span<const core::BodyRecord> bodies) {
@@ -220,6 +223,7 @@ void Simulation::step() {
   collect_contact_impulses();
   take_out_what_broke();
   insert_born();
+  settle_blocks();
   snapshot_is_fresh_ = records_are_fresh_ = false;
 }
 

@@ -74,6 +74,8 @@ class Simulation {
  private:
   void make_statics();
   void insert_born();
+  void settle_blocks();
+  void bind_mechanisms();
   void apply_orders(core::Step n);
   void kick(btRigidBody& body, const core::Order& order);
   void take_out(const Removal& removal);

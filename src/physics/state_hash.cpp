@@ -37,6 +37,7 @@ std::uint64_t state_hash(const core::BodyRecord& body) {
   hash.add_all(body.R_WB);
   hash.add_all(body.v_WB);
   hash.add_all(body.w_WB);
+  hash.add(std::uint64_t{static_cast<std::uint32_t>(body.block.x)} << 32U | static_cast<std::uint32_t>(body.block.y));
   return hash.value();
 }
 

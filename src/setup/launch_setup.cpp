@@ -73,6 +73,7 @@ node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, 
   setup.physics.friction_directions = launch.physics.friction_directions;
   setup.physics.contact_erp = launch.physics.contact_erp;
   setup.physics.continuous = launch.physics.is_continuous();
+  setup.physics.block_m = launch.block_m();
   setup.physics.threads = threads_of(launch, 1);
   setup.physics.foresight_s = launch.step_s() * core::horizon::announcing(launch.lookahead(), core::horizon::kMostHops);
   setup.control = launch.control_rules();

@@ -72,6 +72,7 @@ TEST_F(Agreement, DiffersWithEverythingThatIsComputed) {
       "tolerances.frame=0.016",
       "aura.radius=tight",
       "aura.uncertainty=0.4",
+      "physics.block=17",
       "physics.iterations=11",
       "physics.solver=sequential_impulse",
       "physics.friction_directions=2",

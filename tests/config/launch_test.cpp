@@ -92,6 +92,9 @@ TEST(LaunchFile, WhatIsAutoFollowsFromTheSolver) {
   EXPECT_FALSE(workspace.launch(start + "physics: {solver: sequential_impulse}\n").physics.is_continuous());
   EXPECT_EQ(workspace.launch(start).physics.threads, 1);
   EXPECT_EQ(workspace.launch(start + "physics: {threads: auto}\n").physics.threads, std::nullopt);
+  EXPECT_EQ(workspace.launch(start).block_m(), 16);
+  EXPECT_EQ(workspace.launch(start + "physics: {block: auto}\n").block_m(), 16);
+  EXPECT_EQ(workspace.launch(start + "physics: {block: 5.5}\n").block_m(), 5.5);
 }
 
 TEST(LaunchFile, APresetSetsThePhysicsAndWhatStandsBesideItGoesBefore) {

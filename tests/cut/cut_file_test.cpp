@@ -209,8 +209,8 @@ TEST_F(CutFile, OneWrongByteIsRefused) {
     EXPECT_EQ(encode(decode(damaged)), bytes) << i;
   }
   EXPECT_LT(unnoticed, 5);
-  EXPECT_THAT(refusal_of(std::string("AURACUT1").append(bytes.substr(8))),
-              HasSubstr("format 1, and this program reads format 2"));
+  EXPECT_THAT(refusal_of(std::string("AURACUT2").append(bytes.substr(8))),
+              HasSubstr("format 2, and this program reads format 3"));
   EXPECT_THAT(refusal_of(std::string("PNG ....")), HasSubstr("no saved world"));
 }
 
@@ -223,7 +223,7 @@ std::string unpacked(const std::string& bytes) {
 std::string packed(const std::string& inside) {
   std::string out(ZSTD_compressBound(inside.size()), '\0');
   out.resize(ZSTD_compress(out.data(), out.size(), inside.data(), inside.size(), 1));
-  return std::string("AURACUT2").append(out);
+  return std::string("AURACUT3").append(out);
 }
 
 /// Four bytes of its length, and a text.
@@ -320,7 +320,7 @@ TEST_F(CutFile, WhatIsNestedWithoutEndIsRefused) {
 
 /// Frames by hand: blocks of 128 KiB of one byte each, which take four.
 TEST_F(CutFile, WhatBecomesTooLargeIsRefusedBeforeItDoes) {
-  const std::string magic = "AURACUT2\x28\xb5\x2f\xfd";
+  const std::string magic = "AURACUT3\x28\xb5\x2f\xfd";
   const std::string block("\x02\x00\x10\x00", 4);
   std::string bomb = magic + std::string("\x00\x50", 2);
   for (int i = 0; i < 80'000; ++i) bomb += block;
@@ -337,7 +337,7 @@ TEST_F(CutFile, AHeaderIsReadAlone) {
   EXPECT_EQ(decode_header(bytes).cut.step, 120);
   EXPECT_EQ(decode_header(bytes).identity.world, 0xfeedU);
   EXPECT_TRUE(decode_header(bytes).cut.bodies.bodies.empty());
-  EXPECT_THROW(decode_header("AURACUT2"), BadCut);
+  EXPECT_THROW(decode_header("AURACUT3"), BadCut);
 }
 
 TEST_F(CutFile, AFullDiskLeavesNoFile) {

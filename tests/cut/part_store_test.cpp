@@ -122,7 +122,7 @@ TEST_F(Store, ADamagedPartLeavesTheEarlierWorld) {
 
 TEST_F(Store, JunkIsNamedAndInNobodysWay) {
   write_both("state-60.cut", 60, 1);
-  std::ofstream(folder_ / "state-900.cut") << "AURACUT2 and no more";
+  std::ofstream(folder_ / "state-900.cut") << "AURACUT3 and no more";
   std::ofstream(folder_ / "state-800.cut.00000000000000aa.part-0-of-2.new") << "half";
   std::ofstream(folder_ / "notes.txt") << "hello";
   fs::create_directory(folder_ / "state-700.cut");

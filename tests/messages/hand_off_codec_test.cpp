@@ -26,6 +26,7 @@ Expected expected() {
   expected.prototype_count = 7;
   expected.static_count = 3;
   expected.joint_count = 6;
+  expected.block_m = 16;
   return expected;
 }
 
@@ -95,6 +96,10 @@ const Spoilt kSpoilt[] = {
     {"PositionShort", [](Wire& w) { w.body_p_WB().pop_back(); }, WireError::kLength},
     {"RotationShort", [](Wire& w) { w.body_R_WB().pop_back(); }, WireError::kLength},
     {"VelocityShort", [](Wire& w) { w.body_v_WB().pop_back(); }, WireError::kLength},
+    {"BlockShort", [](Wire& w) { w.body_block().pop_back(); }, WireError::kLength},
+    {"BlockFarFromTheBody", [](Wire& w) { w.body_block()[0] = 100; }, WireError::kRange},
+    {"BlockOutOfAnyWorld", [](Wire& w) { w.body_block()[1] = std::numeric_limits<std::int32_t>::min(); },
+     WireError::kRange},
     {"SpinShort", [](Wire& w) { w.body_w_WB().pop_back(); }, WireError::kLength},
     {"ManifoldShort", [](Wire& w) { w.manifold_object1().pop_back(); }, WireError::kLength},
     {"FirstPointShort", [](Wire& w) { w.manifold_first_point().pop_back(); }, WireError::kLength},

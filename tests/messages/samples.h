@@ -99,6 +99,7 @@ inline core::BodyRecord body_of(std::uint64_t id) {
   body.R_WB = turn(static_cast<double>(id)).toRotationMatrix();
   body.v_WB = core::Vec3(-1, 0.5, 1e-20);
   body.w_WB = core::Vec3(3, -2, 0.1);
+  body.block = {-1, static_cast<std::int32_t>(id % 2)};
   return body;
 }
 
@@ -192,7 +193,7 @@ inline bool same(const core::BodyRecord& a, const core::BodyRecord& b) {
   return a.id == b.id && a.epoch == b.epoch && a.prototype == b.prototype && a.birth == b.birth &&
          a.activation_state == b.activation_state && same(a.deactivation_time, b.deactivation_time) &&
          same_bits(a.p_WB, b.p_WB) && same_bits(a.R_WB, b.R_WB) && same_bits(a.v_WB, b.v_WB) &&
-         same_bits(a.w_WB, b.w_WB);
+         same_bits(a.w_WB, b.w_WB) && a.block == b.block;
 }
 
 inline bool same(const core::HandOff& a, const core::HandOff& b) {

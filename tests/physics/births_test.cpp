@@ -16,6 +16,7 @@ class Births : public ::testing::Test {
   Births() {
     newborn = body(7, kSphere, {0, 0, 10}, {1, 2, 3});
     newborn.birth = kBirth;
+    newborn.block = {0, 0};
     world.add(std::span(&newborn, 1));
   }
 

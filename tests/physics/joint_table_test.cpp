@@ -10,6 +10,7 @@
 
 #include "physics/bullet_convert.h"
 #include "physics/joint_scenes.h"
+#include "physics/moving_body.h"
 
 namespace aurasim::physics::testing {
 namespace {
@@ -44,7 +45,7 @@ class JointTableTest : public ::testing::TestWithParam<Solver> {
       hosted.id = body.id, hosted.born = true;
       btRigidBody::btRigidBodyConstructionInfo info(1, nullptr, &shape, btVector3(1, 1, 1));
       info.m_startWorldTransform = to_bullet(body.pose);
-      hosted.rigid = std::make_unique<btRigidBody>(info);
+      hosted.rigid = std::make_unique<MovingBody>(info);
       arrivals.push_back(std::move(hosted));
     }
     bodies.insert(std::move(arrivals));

@@ -233,6 +233,7 @@ class PutBack : public ::testing::TestWithParam<std::tuple<Solver, bool>> {
     Settings settings;
     settings.solver = std::get<0>(GetParam());
     settings.continuous = std::get<1>(GetParam());
+    settings.block_m = 5;
     return settings;
   }
 

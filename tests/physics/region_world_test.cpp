@@ -100,6 +100,7 @@ TEST_F(World, EpochAndPrototypeTravelWithTheBody) {
 TEST_F(World, ARecordComesBackAsItWent) {
   BodyRecord record = pile(random, 5, 1, 0, 0)[0];
   record.deactivation_time = 0.5;
+  record.block = core::block_at(record.p_WB, Settings{}.block_m);
   if (sizeof(btScalar) == sizeof(float)) {  // which can hold only rounded numbers
     for (double* number : {record.p_WB.data(), record.v_WB.data(), record.w_WB.data()}) {
       for (int i = 0; i < 3; ++i) number[i] = static_cast<float>(number[i]);
@@ -138,7 +139,7 @@ TEST_F(World, CanBeMoved) {
 
 TEST(StateHash, TellsEveryNumberOfTheState) {
   const BodyRecord original = body(3, kBox, {1, 2, 3}, {4, 5, 6});
-  std::vector<BodyRecord> changed(16, original);
+  std::vector<BodyRecord> changed(18, original);
   changed[0].id = BodyId{4};
   changed[1].activation_state = 2;
   changed[2].deactivation_time = 1e-300;
@@ -147,6 +148,8 @@ TEST(StateHash, TellsEveryNumberOfTheState) {
   for (int i = 0; i < 3; ++i) changed[9 + i].w_WB[i] = 1e-300;
   for (int i = 0; i < 3; ++i) changed[12 + i].R_WB(i, 2 - i) += 1e-15;
   std::swap(changed[15].p_WB[0], changed[15].p_WB[1]);
+  changed[16].block.x = 1;
+  changed[17].block.y = 1;
   for (const BodyRecord& body : changed) EXPECT_NE(state_hash(body), state_hash(original));
 
   BodyRecord later = original;

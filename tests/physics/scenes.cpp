@@ -72,7 +72,7 @@ core::Scene scene_with(const std::vector<core::Shape>& shapes, Ground ground) {
 
 bool same_bits(const core::BodyRecord& a, const core::BodyRecord& b) {
   return a.id == b.id && a.activation_state == b.activation_state && a.deactivation_time == b.deactivation_time &&
-         a.p_WB == b.p_WB && a.R_WB == b.R_WB && a.v_WB == b.v_WB && a.w_WB == b.w_WB;
+         a.p_WB == b.p_WB && a.R_WB == b.R_WB && a.v_WB == b.v_WB && a.w_WB == b.w_WB && a.block == b.block;
 }
 
 }  // namespace

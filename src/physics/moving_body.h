@@ -1,0 +1,38 @@
+// A rigid body that is not static. It knows its block and its size.
+#pragma once
+
+#include <BulletCollision/CollisionShapes/btCollisionShape.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include "core/block.h"
+
+namespace aurasim::physics {
+
+/// The user pointer of a MovingBody points to one.
+struct BodyPlace {
+  core::Block block{0, 0};
+  double radius_m = 0;    ///< of a ball around the centre of mass that holds the shape
+  bool is_bound = false;  ///< its block is that of another body, which is the first of its mechanism
+};
+
+class MovingBody final : public btRigidBody {
+ public:
+  explicit MovingBody(const btRigidBodyConstructionInfo& info) : btRigidBody(info) {
+    btVector3 centre;
+    btScalar radius_m = 0;
+    getCollisionShape()->getBoundingSphere(centre, radius_m);
+    place_.radius_m = static_cast<double>(centre.length() + radius_m);
+    setUserPointer(&place_);
+  }
+  MovingBody(const MovingBody&) = delete;
+  MovingBody& operator=(const MovingBody&) = delete;
+
+ private:
+  BodyPlace place_;
+};
+
+/// Precondition: `body` is a MovingBody.
+inline BodyPlace& place_of(btRigidBody& body) { return *static_cast<BodyPlace*>(body.getUserPointer()); }
+inline const BodyPlace& place_of(const btRigidBody& body) { return *static_cast<BodyPlace*>(body.getUserPointer()); }
+
+}  // namespace aurasim::physics

@@ -1,0 +1,37 @@
+// The blocks of bodies (core/block.h), which are part of their state.
+#include "physics/bullet_convert.h"
+#include "physics/moving_body.h"
+#include "physics/simulation.h"
+
+namespace aurasim::physics {
+
+/// Gives each body of the present state its block: bodies that are beyond the margin that of their centre, and those
+/// of a mechanism that of its first body. Does nothing if that has been done in this state before.
+void Simulation::settle_blocks() {
+  const bool mechanisms_changed = joints_.mechanisms_changed();
+  if (mechanisms_changed) bind_mechanisms();
+  bool any_left = false;
+  for (const HostedBody& body : table_.bodies()) {
+    if (!body.born || !body.rigid->isActive()) continue;  // only awake bodies have moved
+    BodyPlace& place = place_of(*body.rigid);
+    if (place.is_bound) continue;
+    const core::Vec3 p_WB = from_bullet(body.rigid->getWorldTransform().getOrigin());
+    if (!core::leaves(p_WB, place.block, settings_.block_m)) continue;
+    place.block = core::block_at(p_WB, settings_.block_m);
+    any_left = true;
+  }
+  if (!any_left && !mechanisms_changed) return;
+  for (const core::BoundBody& bound : joints_.mechanisms()) {
+    place_of(*table_.find(bound.body)->rigid).block = place_of(*table_.find(bound.first)->rigid).block;
+  }
+  records_are_fresh_ = false;
+}
+
+void Simulation::bind_mechanisms() {
+  for (const HostedBody& body : table_.bodies()) place_of(*body.rigid).is_bound = false;
+  for (const core::BoundBody& bound : joints_.mechanisms()) {
+    place_of(*table_.find(bound.body)->rigid).is_bound = bound.body != bound.first;
+  }
+}
+
+}  // namespace aurasim::physics
