@@ -38,6 +38,7 @@ TEST(SoftThreads, TheirNumberChangesNoBit) {
   for (const int threads : {1, 2, 3, 8}) {
     Settings settings;
     settings.solver = Solver::kSoftStep;
+    settings.block_m = 6;
     settings.continuous = true;
     settings.threads = threads;
     RegionWorld world(scene, settings);

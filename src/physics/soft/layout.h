@@ -1,11 +1,13 @@
-// Arranges patches or joints ("entries"), each between two bodies, in blocks of lanes. Entries of one colour share no
-// body that moves. Within a colour they are grouped by kind.
+// Arranges patches or joints ("entries"), each between two bodies, in blocks of lanes. They are solved phase by phase
+// (soft/seams.h), in colours: entries of one colour share no body that moves. Within a colour they are grouped by kind.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "physics/soft/seams.h"
 #include "physics/soft/threads.h"
 
 namespace aurasim::physics {
@@ -15,9 +17,9 @@ class SoftLayout {
   /// Starts anew. `movers`: number of movers; `kinds`: number of kinds of entries.
   void clear(std::size_t movers, std::size_t kinds);
   /// Adds an entry between two movers; 0 and below are statics. The entries of an island have to come in an order that
-  /// follows from the island alone, and so do the colours. Entries with statics have colours of their own, which are
-  /// solved last, because statics cannot give way.
-  void add(std::int32_t a, std::int32_t b, std::size_t kind);
+  /// follows from the island alone, and so do the colours. No colour has entries of two phases. Entries with statics
+  /// have a phase of their own, which is solved last, because statics cannot give way.
+  void add(std::int32_t a, std::int32_t b, std::size_t kind, SoftPhase phase = SoftPhase::kInside);
   /// Places all added entries in blocks. Returns the number of blocks.
   std::size_t place();
 
@@ -41,9 +43,12 @@ class SoftLayout {
   }
 
  private:
+  static constexpr std::size_t kStatics = kSoftPhases;  ///< phase of the entries with statics
+
   struct Entry {
-    std::int32_t a, b;    ///< movers
-    std::uint32_t kind;   ///< colour * kinds + kind
+    std::int32_t a, b;  ///< movers
+    std::uint16_t kind;
+    std::uint8_t phase, colour;
     std::uint32_t place;  ///< block * lanes + lane
   };
   /// Blocks of one colour and kind.
@@ -53,10 +58,18 @@ class SoftLayout {
     bool ends;      ///< the last run of its colour
   };
 
+  std::size_t row_of(const Entry& entry) const {
+    return (first_colour_[entry.phase] + entry.colour) * kinds_ + entry.kind;
+  }
+
   std::size_t kinds_ = 1;
-  std::vector<Entry> entries_;       ///< in the order of add()
-  std::vector<std::uint64_t> used_;  ///< by mover: bits of its colours
-  std::vector<std::uint32_t> next_;  ///< by colour and kind: next free place
+  std::size_t movers_ = 0;
+  std::vector<Entry> entries_;  ///< in the order of add()
+  /// by phase and mover: bits of its colours; those with statics lie above those of the first phase
+  std::array<std::vector<std::uint64_t>, kSoftPhases> used_;
+  std::array<std::size_t, kSoftPhases + 1> colours_{};       ///< by phase: number of colours
+  std::array<std::size_t, kSoftPhases + 1> first_colour_{};  ///< by phase: number of the colours of earlier phases
+  std::vector<std::uint32_t> next_;                          ///< by colour and kind: next free place
   std::vector<Run> runs_;
 };
 

@@ -108,9 +108,9 @@ void SoftPatches::clear(std::size_t movers) {
   layout_.clear(movers, soft::kMostPoints + 1);
 }
 
-void SoftPatches::add(SoftPatch& patch, std::int32_t a, std::int32_t b) {
+void SoftPatches::add(SoftPatch& patch, std::int32_t a, std::int32_t b, SoftPhase phase) {
   patches_.push_back(&patch);
-  layout_.add(a, b, static_cast<std::size_t>(patch.count));
+  layout_.add(a, b, static_cast<std::size_t>(patch.count), phase);
 }
 
 void SoftPatches::build(const Mover* movers, const SoftInertia* inertias, const Real (&gravity)[3], int threads) {

@@ -26,7 +26,7 @@ class SoftPatches {
   void clear(std::size_t movers);
   /// Adds a patch between two movers. The patches of an island have to be added in an order that follows from the
   /// island alone.
-  void add(SoftPatch& patch, std::int32_t a, std::int32_t b);
+  void add(SoftPatch& patch, std::int32_t a, std::int32_t b, SoftPhase phase);
   /// Lays out all added patches. `inertias`: by mover; gravity in m/s^2.
   void build(const soft::Mover* movers, const SoftInertia* inertias, const soft::Real (&gravity)[3], int threads);
 

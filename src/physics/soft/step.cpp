@@ -12,10 +12,13 @@
 #include "physics/bullet_convert.h"
 #include "physics/contact_impulses.h"
 #include "physics/free_rotation.h"
+#include "physics/moving_body.h"
 #include "physics/prefetch.h"
+#include "physics/settings.h"
 #include "physics/soft/convert.h"
 #include "physics/soft/joints.h"
 #include "physics/soft/patches.h"
+#include "physics/soft/seams.h"
 #include "physics/soft/threads.h"
 
 namespace aurasim::physics {
@@ -87,13 +90,14 @@ void fly(btRigidBody& body, const btVector3& gravity, btScalar step_s) {
 struct SoftStep::Impl {
   static constexpr std::int32_t kHeld = -1;
 
-  Impl(double step_s, int substeps, int threads)
-      : threads(threads),
-        step_s(static_cast<btScalar>(step_s)),
-        h_s(static_cast<Real>(step_s / substeps)),
-        substeps(substeps),
-        patches(step_s, substeps),
-        joints(step_s / substeps) {}
+  explicit Impl(const Settings& settings)
+      : threads(settings.threads),
+        step_s(static_cast<btScalar>(settings.step_s)),
+        h_s(static_cast<Real>(settings.step_s / settings.substeps)),
+        substeps(settings.substeps),
+        block_m(settings.block_m),
+        patches(settings.step_s, settings.substeps),
+        joints(settings.step_s / settings.substeps) {}
 
   /// Body of a mover at the start of the step.
   struct Body {
@@ -125,6 +129,7 @@ struct SoftStep::Impl {
   void take_in(std::size_t i);
   void take_in_row(std::size_t row);
   void take_in_pushes();
+  SoftPhase phase_of(std::int32_t a, std::int32_t b) const;
   void show(std::size_t i) const;
   void prefetch_after(std::size_t i) const;
   void run(const soft::Worker& worker);
@@ -134,6 +139,7 @@ struct SoftStep::Impl {
   btScalar step_s;
   Real h_s;
   int substeps;
+  double block_m;
   btVector3 gravity{0, 0, 0};
   /// by user index; 0: touches nothing; kHeld: touches something and has no mover yet
   std::vector<std::int32_t> mover_at;
@@ -148,13 +154,13 @@ struct SoftStep::Impl {
   std::vector<soft::Tumblers> tumblers;  ///< by row of bodies
   std::vector<SoftInertia> inertias;     ///< by mover
   std::vector<Body> bodies;              ///< by mover
+  std::vector<SoftPlace> places;         ///< by mover
   std::vector<PushedMover> pushes;       ///< ascending mover
   SoftPatches patches;
   SoftJoints joints;
 };
 
-SoftStep::SoftStep(double step_s, int substeps, int threads)
-    : impl_(std::make_unique<Impl>(step_s, substeps, threads)) {}
+SoftStep::SoftStep(const Settings& settings) : impl_(std::make_unique<Impl>(settings)) {}
 SoftStep::~SoftStep() = default;
 
 void SoftStep::Impl::hold(int user_index) {
@@ -202,6 +208,7 @@ void SoftStep::Impl::make_room(std::size_t moving_statics) {
   tumblers.resize(held.size() / soft::kLanes);
   inertias.resize(held.size());
   bodies.resize(held.size());
+  places.resize(held.size());
 }
 
 /// Makes the movers of moving statics. They go on evenly, whatever they touch.
@@ -228,6 +235,12 @@ void SoftStep::Impl::take_in_pushes() {
     soft::from_bullet(push.v * btScalar(h_s), mover.v);
     soft::from_bullet(push.w * btScalar(h_s), mover.w);
   }
+}
+
+/// Contacts with statics have a phase of their own, whatever this returns for them.
+SoftPhase SoftStep::Impl::phase_of(std::int32_t a, std::int32_t b) const {
+  if (a <= 0 || b <= 0) return SoftPhase::kInside;
+  return physics::phase_of(places[static_cast<std::size_t>(a)], places[static_cast<std::size_t>(b)]);
 }
 
 void SoftStep::Impl::take_in_row(std::size_t row) {
@@ -258,6 +271,8 @@ void SoftStep::Impl::take_in(std::size_t i) {
   }
   const btTransform& start = body.getWorldTransform();
   bodies[i] = {start.getOrigin(), start.getRotation(), body.getLinearVelocity(), body.getAngularVelocity()};
+  const BodyPlace& place = place_of(body);
+  places[i] = soft_place(from_bullet(start.getOrigin()), place.block, place.radius_m, block_m);
   const std::optional<core::Vec3> tumbling = tumbling_inertia(body);
   if (!tumbling) return;
   soft::Tumblers& row = tumblers[i / soft::kLanes];
@@ -347,7 +362,8 @@ void SoftStep::solve(std::span<btRigidBody* const> bodies, std::span<btRigidBody
   impl.patches.clear(impl.held.size());
   for (const SoftTouch& touch : touches) {
     const std::int32_t a = impl.mover_of(touch.a), b = impl.mover_of(touch.b);
-    for (SoftPatch& patch : contacts.patches_of(touch)) impl.patches.add(patch, a, b);
+    const SoftPhase phase = impl.phase_of(a, b);
+    for (SoftPatch& patch : contacts.patches_of(touch)) impl.patches.add(patch, a, b, phase);
   }
   Real pull[3];
   soft::from_bullet(gravity, pull);

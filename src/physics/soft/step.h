@@ -15,11 +15,12 @@ namespace aurasim::physics {
 
 class ContactImpulses;
 class SoftContacts;
+struct Settings;
 struct SoftTouch;
 
 class SoftStep {
  public:
-  SoftStep(double step_s, int substeps, int threads);
+  explicit SoftStep(const Settings& settings);
   ~SoftStep();
 
   /// Moves and turns `bodies`: all that are awake. `moving_statics` push them, and their own poses are not changed. The

@@ -31,7 +31,7 @@ class SoftWorld final : public World {
         contact_impulses_(parts.contact_impulses),
         contacts_(settings.step_s, settings.continuous, settings.threads, islands_, first_contacts_),
         moving_statics_(parts.moving_statics),
-        step_(settings.step_s, settings.substeps, settings.threads),
+        step_(settings),
         looks_ahead_(settings.continuous) {}
 
   int stepSimulation(btScalar step_s, int, btScalar) override {
