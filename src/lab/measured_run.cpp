@@ -22,6 +22,7 @@ ClusterRules cluster_rules(const Case& c, const RunRules& rules) {
   cluster.physics.solver = rules.solver;
   cluster.physics.solver_iterations = rules.iterations;
   cluster.physics.friction_directions = rules.friction_directions;
+  cluster.physics.block_m = rules.block_m;
   cluster.physics.contact_erp = c.contact_erp;
   cluster.physics.continuous = c.continuous.value_or(cluster.physics.looks_once());
   cluster.hash_states = true;

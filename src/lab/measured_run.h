@@ -18,6 +18,7 @@ struct RunRules {
   physics::Solver solver = physics::Solver::kSequentialImpulse;
   int iterations = 10;
   int friction_directions = 1;
+  double block_m = core::kUsualBlock_m;
   core::SyncMode sync = core::SyncMode::kDeterministic;
   int lookahead = 1;
   core::AuraKind aura = core::AuraKind::kSwept;

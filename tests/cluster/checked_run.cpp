@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cluster/scenes.h"
 #include "core/horizon.h"
 #include "records/setpoint_record.h"
 #include "records/thrashing.h"
@@ -42,6 +43,7 @@ ClusterOptions checked_options(int seed) {
   options.seed = static_cast<std::uint64_t>(seed);
   options.aura.top_speed_m_s = 40;
   options.aura.redo = true;
+  options.physics.block_m = block_of(seed);
   options.bandwidth_B_s = lab::kUnlimited_B_s;
   options.network.latency_s = 0.004 * (seed % 7);
   options.network.jitter_s = 0.006 * (seed % 4);

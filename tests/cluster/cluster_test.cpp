@@ -48,6 +48,7 @@ ClusterOptions options_for(const Layout& layout, int seed) {
   options.aura.lookahead = 1 + seed % 3;
   options.aura.substeps = 1 << (seed % 3);
   options.aura.top_speed_m_s = 40;
+  options.physics.block_m = block_of(seed);
   options.network.loss = 0.05 * (seed % 5);
   options.network.duplicate = 0.05 * (seed % 3);
   options.network.keep_order = seed % 2 == 0;

@@ -1,6 +1,7 @@
 #include "cluster/scenes.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <random>
 
@@ -71,6 +72,11 @@ core::Scene driven_pairs(std::size_t count, double width_x_m, double width_y_m, 
     scene.joints.push_back(joint);
   }
   return scene;
+}
+
+double block_of(int seed) {
+  constexpr std::array kSides_m = {4.0, 7.0, 10.0, 16.0, 23.0, 64.0};
+  return kSides_m[std::mt19937_64(static_cast<std::uint64_t>(seed))() % kSides_m.size()];
 }
 
 int seeds_or(int usual) {

@@ -16,6 +16,9 @@ core::Scene thrown_bodies(std::size_t count, double width_x_m, double width_y_m,
 /// stiff drive, and sliders with springs and friction.
 core::Scene driven_pairs(std::size_t count, double width_x_m, double width_y_m, double speed_m_s, std::uint64_t seed);
 
+/// Side of the blocks for a seed, 4 to 64 m.
+double block_of(int seed);
+
 /// How many seeds a rule is tried with: AURASIM_SEEDS, if it is set.
 int seeds_or(int usual);
 

@@ -20,6 +20,7 @@ TEST_P(SolverBits, AreThoseOfTheCentralRun) {
     options.map = seed == 3 ? core::RegionMap::grid(2, 2, 9, 9) : core::RegionMap::columns(2, 9);
     options.sync = core::SyncMode::kDeterministic;
     options.physics.solver = GetParam();
+    options.physics.block_m = 7;
     options.physics.friction_directions = static_cast<int>(1 + seed % 2);
     options.seed = seed;
     options.aura.lookahead = static_cast<int>(1 + seed % 2);
@@ -42,6 +43,7 @@ TEST_P(SolverBits, OfDrivenJointsAreThoseOfTheCentralRun) {
     options.map = seed == 1 ? core::RegionMap::grid(2, 2, 9, 9) : core::RegionMap::columns(2, 9);
     options.sync = core::SyncMode::kDeterministic;
     options.physics.solver = GetParam();
+    options.physics.block_m = 7;
     options.seed = seed;
     options.aura.lookahead = 1;
     options.aura.top_speed_m_s = 60;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -16,8 +17,10 @@ namespace {
 using core::Vec3;
 
 constexpr std::size_t kMostBodies = 70;
+constexpr double kSmallestBlock_m = 4;  ///< the largest has 16 times its side
 constexpr const char* kUsualSolver = "soft_step";
 constexpr const char* kOtherSolver = "sequential_impulse";
+constexpr std::uint64_t kBlocksOf = 0xD1B54A32D192ED03;    ///< separates the random numbers of blocks from the rest
 constexpr std::uint64_t kProgramsOf = 0x9E3779B97F4A7C15;  ///< separates the random numbers of programs from the rest
 
 /// Parameters that determine the rest of a world.
@@ -244,6 +247,10 @@ World random_world(std::uint64_t seed) {
   if (dials.solver == kUsualSolver && of_statics.below(3) == 0) {
     add_moving_statics(layout, world.scene, of_statics);
     send_statics(world, of_statics);
+  }
+  Chance of_blocks(seed ^ kBlocksOf);
+  if (of_blocks.below(6) > 0) {
+    world.launch["physics"]["block"] = rounded(kSmallestBlock_m * std::pow(2, of_blocks.between(0, 4)));
   }
   Chance of_programs(seed ^ kProgramsOf);
   if (of_programs.below(3) == 0) {

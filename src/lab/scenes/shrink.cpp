@@ -171,7 +171,7 @@ void make_plain(Shrinker& shrinker) {
     change(plainer);
     shrinker.accept(std::move(plainer));
   };
-  for (const char* key : {"solver", "iterations", "friction_directions", "erp", "continuous"}) {
+  for (const char* key : {"solver", "iterations", "friction_directions", "erp", "continuous", "block"}) {
     if (shrinker.best().world.launch["physics"].contains(key)) {
       try_world([&](World& world) { world.launch["physics"].erase(key); });
     }

@@ -9,6 +9,7 @@ std::span<const Suite> suites() {
   static constexpr std::array kSuites = {
       Suite{"accuracy", "hard cases against closed forms, and error against CPU time (docs/accuracy.md)",
             run_accuracy_suite, accuracy_parts},
+      Suite{"blocks", "hard cases with blocks of 8, 16 and 32 m (docs/accuracy.md)", run_blocks_suite, blocks_parts},
       Suite{"correctness", "do bodies collide across borders as in one world? (docs/correctness.md)",
             run_correctness_suite, correctness_parts},
       Suite{"correctness_over_dds", "a part of it in real time, over DDS on loopback (docs/correctness.md)",

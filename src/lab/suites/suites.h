@@ -41,6 +41,8 @@ std::span<const Suite> suites();
 
 SuiteResults run_accuracy_suite(const SuitePlan& plan, const Progress& progress);
 std::vector<std::string> accuracy_parts();
+SuiteResults run_blocks_suite(const SuitePlan& plan, const Progress& progress);
+std::vector<std::string> blocks_parts();
 SuiteResults run_correctness_suite(const SuitePlan& plan, const Progress& progress);
 std::vector<std::string> correctness_parts();
 /// Real nodes over DDS on loopback, in real time: 15 minutes, nearly all of it waiting.
