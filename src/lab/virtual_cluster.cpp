@@ -49,7 +49,7 @@ VirtualCluster::VirtualCluster(const core::Scene& scene, const core::RegionMap& 
   for (const BrokenLink& link : rules.broken_links) {
     network_.faults().cut(link.a, link.b, link.from_s, link.until_s);
   }
-  if (rules.bandwidth_B_s) post_.emplace(network_, map_.size(), *rules.bandwidth_B_s);
+  if (rules.bandwidth_B_s) post_.emplace(network_, map_.size(), *rules.bandwidth_B_s, rules.physics.block_m);
   node::NodeSetup setup = node_setup(rules);
   for (std::uint32_t r = 0; r < map_.size(); ++r) {
     setup.protocol.self = core::RegionId{r};

@@ -32,8 +32,10 @@ void arrive(messages::Decoded<Message> decoded, const Message& envelope, core::M
 
 class WirePost::Endpoint : public transport::Transport {
  public:
-  Endpoint(WirePost& post, core::RegionId region)
-      : post_(post), network_(post.network_.endpoint(region)), region_(region) {}
+  Endpoint(WirePost& post, core::RegionId region, double block_m)
+      : post_(post), network_(post.network_.endpoint(region)), region_(region) {
+    expected_.block_m = block_m;
+  }
 
   void take(core::Inbox& inbox) override {
     core::Inbox arrived;
@@ -129,10 +131,10 @@ class WirePost::Endpoint : public transport::Transport {
   double free_s_ = 0;  ///< when the link has sent what it was given
 };
 
-WirePost::WirePost(transport::MemoryNetwork& network, std::size_t regions, double bandwidth_B_s)
+WirePost::WirePost(transport::MemoryNetwork& network, std::size_t regions, double bandwidth_B_s, double block_m)
     : network_(network), bandwidth_B_s_(bandwidth_B_s), kept_(regions) {
   for (std::uint32_t r = 0; r < regions; ++r) {
-    endpoints_.push_back(std::make_unique<Endpoint>(*this, core::RegionId{r}));
+    endpoints_.push_back(std::make_unique<Endpoint>(*this, core::RegionId{r}, block_m));
   }
 }
 

@@ -33,9 +33,9 @@ class WirePost {
   static constexpr std::uint64_t kDatagramBytes = 1300;
 
   /// `network` has `regions` regions and must outlive this object. `bandwidth_B_s`: bandwidth of each node's link,
-  /// bytes per second.
+  /// bytes per second. `block_m`: messages::Expected::block_m.
   WirePost(transport::MemoryNetwork& network, std::size_t regions,
-           double bandwidth_B_s = std::numeric_limits<double>::infinity());
+           double bandwidth_B_s = std::numeric_limits<double>::infinity(), double block_m = 0);
   ~WirePost();
 
   transport::Transport& endpoint(core::RegionId region);
