@@ -59,7 +59,7 @@ TEST_F(Scenes, TheSameSeedGivesTheSameFiles) {
 TEST_F(Scenes, ASeedMeansTheSameWorldEverywhere) {
   core::Fnv1a hash;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) hash.add_text(text_of(random_world(seed)));
-  EXPECT_EQ(hash.value(), 5665516410962984736ull);
+  EXPECT_EQ(hash.value(), 4523807717225671825ull);
 }
 
 TEST_F(Scenes, EveryWorldIsRead) {
