@@ -91,6 +91,22 @@ TEST(WayBack, IsFarEnoughToBringTwoBodiesTogetherAtTheFirstTry) {
   }
 }
 
+/// News of a touch cross a wide map as fast as messages do, not in steps of K states.
+TEST(WayBack, IsShortOnAWideMap) {
+  constexpr int kLookahead = 4, kColumns = 6;
+  ClusterOptions options = options_for(2);
+  options.map = core::RegionMap::columns(kColumns, kCell);
+  options.aura.lookahead = kLookahead;
+  options.aura.kind = AuraKind::kNone;
+  const core::Scene scene = two_balls(60);
+  const Outcome apart = CheckedRun(scene, options).run(kRedoSteps);
+  EXPECT_EQ(first_difference(apart, run_central(scene, options, kRedoSteps)), kRedoSteps + 1);
+  ASSERT_EQ(apart.redos, 1u);
+  constexpr core::Step kRound = (kColumns - 1) * kLookahead;
+  EXPECT_GT(apart.again, 0u);
+  EXPECT_LT(apart.again, std::uint64_t{kRound + core::horizon::check(kLookahead)});
+}
+
 TEST(Check, WithoutItsMarginMissesATouch) {
   std::size_t differ = 0;
   for (int seed = 1; seed <= 6; ++seed) {
