@@ -8,7 +8,9 @@ fail() { echo "FAILED: $*" >&2; exit 1; }
 rows=$work/accuracy.jsonl
 
 "$lab" run accuracy --results "$work" >"$work/said" 2>/dev/null || fail "NothingStoredYetIsNoDifference: $(<"$work/said")"
-first=$(wc -l <"$rows")
+# How many points lie on the front depends on CPU times, so their rows are not counted.
+count() { grep -vcE '"case": ?"(front|others)/' "$rows"; }
+first=$(count)
 ((first > 100)) || fail "ARunAppendsItsRows: $first rows"
 ! grep -q '"run":"full"' "$rows" || fail "AQuickRunIsCalledQuick"
 
@@ -28,4 +30,4 @@ differ=$(grep '^DIFFERS' "$work/said" | grep -v 'CPU time' || true) # a busy mac
 [[ $differ == "DIFFERS spring/1_60 s, distance from the sine:"* && $(wc -l <<<"$differ") == 1 ]] ||
   fail "AnErrorThatChangedIsNamed: $differ"
 [[ $code != 0 ]] || fail "ADifferenceFails"
-[[ $(wc -l <"$rows") == $((2 * first)) ]] || fail "ItsRowsAreStoredAllTheSame"
+[[ $(count) == $((2 * first)) ]] || fail "ItsRowsAreStoredAllTheSame"
