@@ -12,12 +12,6 @@
 namespace aurasim::node {
 namespace {
 
-std::uint64_t hash_sum(std::span<const core::BodyRecord> bodies) {
-  std::uint64_t sum = 0;
-  for (const core::BodyRecord& body : bodies) sum += physics::state_hash(body);
-  return sum;
-}
-
 /// True if the scene has all objects that a hand-off names. Every object is in the scene by the time that the hand-off
 /// takes effect. If one is missing, the sender computes another world.
 bool is_of_the_scene(const core::ClusterState& cluster, const core::Scene& scene) {
@@ -180,7 +174,7 @@ void Node::apply(const core::Changes& changes) {
 void Node::adopt(const core::Adoption& adoption, std::uint32_t nth) {
   world_.adopt(adoption.cluster, std::min(adoption.stamp, current_step()),
                [&](core::Step step, std::span<const core::BodyRecord> bodies) {
-                 if (setup_.hash_states) report_.hash.push_back({step, hash_sum(bodies)});
+                 if (setup_.hash_states) report_.hash.push_back({step, physics::state_hash_sum(bodies)});
                  if (is_observed_) report_.made_up.push_back(made_up(step, bodies, adoption.cluster));
                  protocol_->note_made_up(step, nth, bodies);
                });
@@ -222,7 +216,7 @@ void Node::finish_state() {
   }
   if (setup_.hash_states) {
     const Timed timed(report_.durations.hash_s, setup_.clock);
-    report_.hash.push_back({snapshot->step, hash_sum(world_.records())});
+    report_.hash.push_back({snapshot->step, physics::state_hash_sum(world_.records())});
   }
   count(*snapshot);
   const std::vector<core::Departure>* departures = nullptr;

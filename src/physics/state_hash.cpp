@@ -1,6 +1,9 @@
 #include "physics/state_hash.h"
 
+#include <array>
 #include <bit>
+#include <cstddef>
+#include <numeric>
 
 namespace aurasim::physics {
 namespace {
@@ -12,33 +15,50 @@ std::uint64_t mixed(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-class Hash {
- public:
-  void add(std::uint64_t word) { state_ = mixed(state_ + 0x9e3779b97f4a7c15 + word); }
-  void add(double number) { add(std::bit_cast<std::uint64_t>(number)); }
-  template <class Matrix>
-  void add_all(const Matrix& numbers) {
-    for (Eigen::Index i = 0; i < numbers.size(); ++i) add(numbers.data()[i]);
-  }
-  std::uint64_t value() const { return state_; }
+constexpr std::size_t kWords = 3 + 3 + 9 + 3 + 3 + 1;
 
- private:
-  std::uint64_t state_ = 0;
-};
+/// All that the hash of a body is made of.
+std::array<std::uint64_t, kWords> words_of(const core::BodyRecord& body) {
+  std::array<std::uint64_t, kWords> words;
+  auto next = words.begin();
+  const auto add_all = [&](const auto& numbers) {
+    for (Eigen::Index i = 0; i < numbers.size(); ++i) *next++ = std::bit_cast<std::uint64_t>(numbers.data()[i]);
+  };
+  *next++ = core::value_of(body.id);
+  *next++ = static_cast<std::uint64_t>(body.activation_state);
+  *next++ = std::bit_cast<std::uint64_t>(body.deactivation_time);
+  add_all(body.p_WB);
+  add_all(body.R_WB);
+  add_all(body.v_WB);
+  add_all(body.w_WB);
+  *next = std::uint64_t{static_cast<std::uint32_t>(body.block.x)} << 32U | static_cast<std::uint32_t>(body.block.y);
+  return words;
+}
+
+/// The sum of the hashes of `kBodies` bodies. Each word of a hash has to wait for the one before, so several hashes at
+/// once take little longer than one.
+template <std::size_t kBodies>
+std::uint64_t sum_of(const core::BodyRecord* bodies) {
+  std::array<std::array<std::uint64_t, kWords>, kBodies> words;
+  for (std::size_t i = 0; i < kBodies; ++i) words[i] = words_of(bodies[i]);
+  std::array<std::uint64_t, kBodies> hashes{};
+  for (std::size_t word = 0; word < kWords; ++word) {
+    for (std::size_t i = 0; i < kBodies; ++i) hashes[i] = mixed(hashes[i] + 0x9e3779b97f4a7c15 + words[i][word]);
+  }
+  return std::accumulate(hashes.begin(), hashes.end(), std::uint64_t{0});
+}
 
 }  // namespace
 
-std::uint64_t state_hash(const core::BodyRecord& body) {
-  Hash hash;
-  hash.add(core::value_of(body.id));
-  hash.add(static_cast<std::uint64_t>(body.activation_state));
-  hash.add(body.deactivation_time);
-  hash.add_all(body.p_WB);
-  hash.add_all(body.R_WB);
-  hash.add_all(body.v_WB);
-  hash.add_all(body.w_WB);
-  hash.add(std::uint64_t{static_cast<std::uint32_t>(body.block.x)} << 32U | static_cast<std::uint32_t>(body.block.y));
-  return hash.value();
+std::uint64_t state_hash(const core::BodyRecord& body) { return sum_of<1>(&body); }
+
+std::uint64_t state_hash_sum(std::span<const core::BodyRecord> bodies) {
+  constexpr std::size_t kAtOnce = 4;
+  std::uint64_t sum = 0;
+  std::size_t i = 0;
+  for (; i + kAtOnce <= bodies.size(); i += kAtOnce) sum += sum_of<kAtOnce>(&bodies[i]);
+  for (; i < bodies.size(); ++i) sum += state_hash(bodies[i]);
+  return sum;
 }
 
 }  // namespace aurasim::physics

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "core/body_state.h"
 
@@ -9,5 +10,8 @@ namespace aurasim::physics {
 
 /// 64-bit hash of a body's id and full dynamic state (not its epoch). Equal bits, equal hash.
 std::uint64_t state_hash(const core::BodyRecord& body);
+
+/// Sum of the hashes of all bodies, modulo 2^64. Several times faster than one by one.
+std::uint64_t state_hash_sum(std::span<const core::BodyRecord> bodies);
 
 }  // namespace aurasim::physics

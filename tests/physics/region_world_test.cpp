@@ -155,6 +155,12 @@ TEST(StateHash, TellsEveryNumberOfTheState) {
   BodyRecord later = original;
   later.epoch = 9;
   EXPECT_EQ(state_hash(later), state_hash(original));
+
+  std::uint64_t sum = 0;
+  for (std::size_t count = 0; count <= changed.size(); ++count) {
+    EXPECT_EQ(state_hash_sum(std::span(changed).first(count)), sum) << count << " bodies";
+    if (count < changed.size()) sum += state_hash(changed[count]);
+  }
 }
 
 }  // namespace
