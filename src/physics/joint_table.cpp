@@ -167,6 +167,7 @@ void JointTable::put_back(const core::ClusterState& then, BodyTable& bodies, Dyn
     }
   }
   forget_broken_off();
+  mechanisms_are_old_ = true;  // bodies may have got blocks of their own
 }
 
 void JointTable::disconnect(Entry& entry, DynamicsWorld& world) {

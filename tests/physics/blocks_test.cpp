@@ -133,6 +133,18 @@ TEST_P(Blocks, AHandOffAndAPutBackKeepBlocks) {
   EXPECT_EQ(different(other.records(), then.bodies), std::vector<std::uint64_t>());
 }
 
+/// Records of a scene know no blocks. The joints of the mechanism have been here all the time.
+TEST_P(Blocks, APutBackToTheSceneBindsMechanismsAgain) {
+  core::ClusterState start;
+  start.bodies = chain(scene);
+  RegionWorld world(scene, settings);
+  for (int time = 0; time < 2; ++time) {
+    world.put_back(0, start);
+    world.step();
+    for (const BodyRecord& link : world.records()) EXPECT_EQ(link.block, (Block{2, 0}));
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Solvers, Blocks, ::testing::Values(Solver::kSoftStep, Solver::kSequentialImpulse),
                          [](const auto& param) {
                            return std::string(param.param == Solver::kSoftStep ? "SoftStep" : "SequentialImpulse");
