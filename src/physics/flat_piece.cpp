@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
-#include <BulletCollision/CollisionShapes/btConvexHullShape.h>
 #include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
-#include <LinearMath/btConvexHullComputer.h>
+
+#include "physics/hull_faces.h"
 
 namespace aurasim::physics {
 namespace {
@@ -15,8 +15,6 @@ constexpr btScalar kGround_m = btScalar(0.01);
 constexpr btScalar kOutside = btScalar(0.0025);
 /// Faces of a piece that count at one point.
 constexpr std::size_t kMostFaces = 16;
-/// Normals whose product is larger belong to one face of a hull, which Bullet may return in triangles.
-constexpr btScalar kSameFace = btScalar(1 - 1e-9);
 
 FlatFace face_through(const btVector3& normal, const btVector3& p) { return {normal, normal.dot(p), true}; }
 
@@ -31,30 +29,10 @@ std::vector<FlatFace> faces_of_box(const btBoxShape& box, const btTransform& pos
   return faces;
 }
 
-/// Hulls are stored without their margin (shapes.cpp), so the faces lie that much outside of the points.
-std::vector<FlatFace> faces_of_hull(const btConvexHullShape& hull, const btTransform& pose) {
-  const btVector3* const points = hull.getUnscaledPoints();
-  if (hull.getNumPoints() < 4) return {};
-  btConvexHullComputer computer;
-  computer.compute(&points[0].x(), sizeof(btVector3), hull.getNumPoints(), 0, 0);
+std::vector<FlatFace> faces_of_hull(const HullFaces& hull, const btTransform& pose) {
   std::vector<FlatFace> faces;
-  for (int i = 0; i < computer.faces.size(); ++i) {
-    const btConvexHullComputer::Edge* const first = &computer.edges[computer.faces[i]];
-    const auto corner = [&](int vertex) { return points[computer.original_vertex_index[vertex]]; };
-    const btVector3 p = corner(first->getSourceVertex());
-    btVector3 normal(0, 0, 0);
-    for (const auto* edge = first->getNextEdgeOfFace(); edge->getTargetVertex() != first->getSourceVertex();
-         edge = edge->getNextEdgeOfFace()) {
-      normal += (corner(edge->getSourceVertex()) - p).cross(corner(edge->getTargetVertex()) - p);
-    }
-    if (normal.fuzzyZero()) continue;
-    normal.normalize();
-    btVector3 middle(0, 0, 0);
-    for (int k = 0; k < hull.getNumPoints(); ++k) middle += points[k] / hull.getNumPoints();
-    if (normal.dot(middle - p) > 0) normal = -normal;
-    FlatFace face = face_through(pose.getBasis() * normal, pose(p + normal * hull.getMargin()));
-    const auto same = [&](const FlatFace& other) { return other.normal.dot(face.normal) > kSameFace; };
-    if (std::ranges::none_of(faces, same)) faces.push_back(face);
+  for (std::size_t i = 0; i < hull.face_count(); ++i) {
+    faces.push_back(face_through(pose.getBasis() * hull.normals[i], pose(hull.normals[i] * hull.offsets[i])));
   }
   return faces;
 }
@@ -85,9 +63,9 @@ std::vector<FlatFace> faces_of(const btCollisionShape& shape, const btTransform&
   switch (shape.getShapeType()) {
     case BOX_SHAPE_PROXYTYPE:
       return faces_of_box(static_cast<const btBoxShape&>(shape), pose);
-    case CONVEX_HULL_SHAPE_PROXYTYPE:
     case CUSTOM_POLYHEDRAL_SHAPE_TYPE:  // HullShape
-      return faces_of_hull(static_cast<const btConvexHullShape&>(shape), pose);
+      if (const HullFaces* const faces = hull_faces_of(shape)) return faces_of_hull(*faces, pose);
+      return {};
     case STATIC_PLANE_PROXYTYPE: {
       const auto& plane = static_cast<const btStaticPlaneShape&>(shape);
       return {face_through(pose.getBasis() * plane.getPlaneNormal(),
