@@ -122,7 +122,6 @@ void Node::compute_and_keep() {
   if (current_step() % core::horizon::kBetweenCuts == 0) take_cut();
   forget_cuts();
   forget_setpoints();
-  order_redo();
   order_recorded_moves();
 }
 
