@@ -30,7 +30,7 @@ double radius_m(const Scene& scene, PrototypeId prototype) {
   return bounding_radius(scene.shapes.at(scene.prototypes.at(value_of(prototype)).shape).shape);
 }
 
-/// Of the bodies of the start first, one by one.
+/// The reaches of the bodies of the start come first, one for each.
 std::vector<Reach> reaches_of(const Scene& scene) {
   std::vector<Reach> reaches;
   for (const InitialBody& body : scene.bodies) reaches.push_back({radius_m(scene, body.prototype), 1});

@@ -23,7 +23,7 @@ constexpr double kRounding = 1e-9;
 /// Points of B - A that are remembered for the search for edges.
 constexpr std::size_t kMostWitnesses = 16;
 
-/// What is known of the faces of one of the hulls.
+/// The faces of one of the hulls, as far as the search knows them.
 struct Faces {
   std::vector<double> bounds;          ///< upper bound of each gap; kNothing once the face has been searched
   std::vector<double> products;        ///< of each remembered point of B - A with each normal

@@ -12,6 +12,14 @@ namespace {
 
 class SolverBits : public testing::TestWithParam<physics::Solver> {};
 
+/// Returns the number of hand-offs.
+std::uint64_t expect_bits_of_central_run(const core::Scene& scene, const ClusterOptions& options, core::Step steps) {
+  const Outcome o = CheckedRun(scene, options).run(steps);
+  EXPECT_EQ(o.hash, run_central(scene, options, steps).hash) << "seed " << options.seed;
+  EXPECT_EQ(o.late + o.missed + o.lost + o.doubled, 0u) << "seed " << options.seed;
+  return o.hand_offs;
+}
+
 TEST_P(SolverBits, AreThoseOfTheCentralRun) {
   std::uint64_t hand_offs = 0;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
@@ -26,10 +34,7 @@ TEST_P(SolverBits, AreThoseOfTheCentralRun) {
     options.aura.lookahead = static_cast<int>(1 + seed % 2);
     options.aura.top_speed_m_s = 40;
     options.network.loss = 0.05;
-    const Outcome o = CheckedRun(scene, options).run(180);
-    EXPECT_EQ(o.hash, run_central(scene, options, 180).hash) << "seed " << seed;
-    EXPECT_EQ(o.late + o.missed + o.lost + o.doubled, 0u) << "seed " << seed;
-    hand_offs += o.hand_offs;
+    hand_offs += expect_bits_of_central_run(scene, options, 180);
   }
   EXPECT_GT(hand_offs, 0u);
   std::cout << hand_offs << " hand-offs\n";
@@ -48,10 +53,7 @@ TEST_P(SolverBits, OfDrivenJointsAreThoseOfTheCentralRun) {
     options.aura.lookahead = 1;
     options.aura.top_speed_m_s = 60;
     options.bandwidth_B_s = lab::kUnlimited_B_s;
-    const Outcome o = CheckedRun(scene, options).run(240);
-    EXPECT_EQ(o.hash, run_central(scene, options, 240).hash) << "seed " << seed;
-    EXPECT_EQ(o.late + o.missed + o.lost + o.doubled, 0u) << "seed " << seed;
-    hand_offs += o.hand_offs;
+    hand_offs += expect_bits_of_central_run(scene, options, 240);
   }
   EXPECT_GT(hand_offs, 0u);
   std::cout << hand_offs << " hand-offs\n";
@@ -105,10 +107,7 @@ TEST_P(SolverBits, OfFloorsOfPiecesAreThoseOfTheCentralRun) {
     options.aura.lookahead = 1 + seed % 2;
     options.aura.top_speed_m_s = 40;
     options.network.loss = 0.05;
-    const Outcome o = CheckedRun(scene, options).run(240);
-    EXPECT_EQ(o.hash, run_central(scene, options, 240).hash) << "seed " << seed;
-    EXPECT_EQ(o.late + o.missed + o.lost + o.doubled, 0u) << "seed " << seed;
-    hand_offs += o.hand_offs;
+    hand_offs += expect_bits_of_central_run(scene, options, 240);
   }
   EXPECT_GT(hand_offs, 0u);
   std::cout << hand_offs << " hand-offs\n";

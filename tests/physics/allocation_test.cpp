@@ -46,16 +46,20 @@ long allocations_of(RegionWorld& world, int steps) {
   return allocations - before;
 }
 
+Settings warm_settings(int threads) {
+  Settings settings;
+  settings.solver = Solver::kSoftStep;
+  settings.continuous = true;
+  settings.threads = threads;
+  return settings;
+}
+
 TEST(Allocation, AWarmStepAllocatesNothing) {
   core::Scene scene = scene_of(core::Box{});
   scene.prototypes[0].can_sleep = false;
   for (const int threads : {1, 2}) {
-    Settings settings;
-    settings.solver = Solver::kSoftStep;
-    settings.continuous = true;
-    settings.threads = threads;
     const long before = allocations;
-    RegionWorld world(scene, settings);
+    RegionWorld world(scene, warm_settings(threads));
     EXPECT_GT(allocations, before) << "they are not counted";
     std::vector<core::BodyRecord> boxes;
     for (int i = 0; i < 200; ++i)
@@ -75,11 +79,7 @@ TEST(Allocation, AWarmStepOfHullsAllocatesNothing) {
   core::Scene scene = scene_of(prism);
   scene.prototypes[0].can_sleep = false;
   for (const int threads : {1, 2}) {
-    Settings settings;
-    settings.solver = Solver::kSoftStep;
-    settings.continuous = true;
-    settings.threads = threads;
-    RegionWorld world(scene, settings);
+    RegionWorld world(scene, warm_settings(threads));
     std::vector<core::BodyRecord> prisms;
     for (int i = 0; i < 200; ++i) {
       prisms.push_back(body(prisms.size(), 0, {1.5 * (i % 10), 1.5 * (i / 50), 0.2 + 0.4 * (i / 10 % 5)}));

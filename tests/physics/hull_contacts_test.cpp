@@ -177,7 +177,7 @@ TEST(HullContacts, TheAxisIsTheBestOfAll) {
     ASSERT_NEAR(from(found->normal).norm(), 1, kExact);
     ASSERT_NEAR(two.gap(from(found->normal)), found->gap, 1e-7);
     ASSERT_LE(found->gap, kMargin + kExact);
-    // Of hulls that are apart, the slow search knows axes that belong to no points that are closest.
+    // The slow search also finds axes of hulls apart that belong to no closest points.
     if (widest > 0) return;
     const double inner = (two.a.faces->inner_radius + two.b.faces->inner_radius) / 2;
     const btVector3 centres = two.X_AB(two.b.faces->centre) - two.a.faces->centre;

@@ -44,18 +44,28 @@ AURASIM_INLINE std::size_t first_of(Farthest<Number> all) {
   return static_cast<std::size_t>(all.place[0]);
 }
 
+/// As many numbers as are looked at once.
+template <class Number>
+AURASIM_INLINE typename Vectors<Number>::Values load(const Number* from) {
+  typename Vectors<Number>::Values to;
+  __builtin_memcpy(&to, from, sizeof to);
+  return to;
+}
+
+/// The products of the points from number `i` on with a direction.
+template <class Number>
+AURASIM_INLINE typename Vectors<Number>::Values products_at(const Number* x, const Number* y, const Number* z,
+                                                            std::size_t i, const Number (&along)[3]) {
+  return load(x + i) * along[0] + load(y + i) * along[1] + load(z + i) * along[2];
+}
+
 template <class Number>
 std::size_t farthest(const Number* x, const Number* y, const Number* z, std::size_t count, const Number (&along)[3]) {
   using Values = typename Vectors<Number>::Values;
   using Places = typename Vectors<Number>::Places;
   constexpr int kAtOnce = sizeof(Values) / sizeof(Number);
-  const auto load = [](const Number* from) {
-    Values to;
-    __builtin_memcpy(&to, from, sizeof to);
-    return to;
-  };
   const auto look = [&](std::size_t i, const Places& place) {
-    return Farthest<Number>{load(x + i) * along[0] + load(y + i) * along[1] + load(z + i) * along[2], place};
+    return Farthest<Number>{products_at(x, y, z, i, along), place};
   };
   Places place;
   for (int i = 0; i < kAtOnce; ++i) place[i] = i;
@@ -75,17 +85,9 @@ void reach(const double* x, const double* y, const double* z, std::size_t count,
            double (&ends)[2]) {
   using Values = Vectors<double>::Values;
   constexpr int kAtOnce = sizeof(Values) / sizeof(double);
-  const auto load = [](const double* from) {
-    Values to;
-    __builtin_memcpy(&to, from, sizeof to);
-    return to;
-  };
-  const auto look = [&](std::size_t i) {
-    return load(x + i) * along[0] + load(y + i) * along[1] + load(z + i) * along[2];
-  };
-  Values low = look(0), high = low;
+  Values low = products_at(x, y, z, 0, along), high = low;
   for (std::size_t i = kAtOnce; i < count; i += kAtOnce) {
-    const Values next = look(i);
+    const Values next = products_at(x, y, z, i, along);
     low = next < low ? next : low;
     high = next > high ? next : high;
   }
@@ -101,16 +103,11 @@ std::size_t tighten(const double* x, const double* y, const double* z, std::size
                     double* products, double* bounds) {
   using Values = Vectors<double>::Values;
   constexpr int kAtOnce = sizeof(Values) / sizeof(double);
-  const auto load = [](const double* from) {
-    Values to;
-    __builtin_memcpy(&to, from, sizeof to);
-    return to;
-  };
   Vectors<double>::Places place;
   for (int i = 0; i < kAtOnce; ++i) place[i] = i;
   Farthest<double> highest{};
   for (std::size_t i = 0; i < count; i += kAtOnce, place += kAtOnce) {
-    const Values product = load(x + i) * along[0] + load(y + i) * along[1] + load(z + i) * along[2];
+    const Values product = products_at(x, y, z, i, along);
     const Values before = load(bounds + i), bound = product < before ? product : before;
     __builtin_memcpy(products + i, &product, sizeof product);
     __builtin_memcpy(bounds + i, &bound, sizeof bound);
