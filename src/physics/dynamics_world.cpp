@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <span>
 
-#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
@@ -12,12 +11,14 @@
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include "physics/broadphase.h"
 #include "physics/bullet_convert.h"
 #include "physics/contact_pairs.h"
 #include "physics/dispatcher.h"
 #include "physics/inner_edges.h"
 #include "physics/moving_static.h"
 #include "physics/prefetch.h"
+#include "physics/soft/threads.h"
 #include "physics/soft/world.h"
 #include "physics/solvers.h"
 #include "physics/stepper.h"
@@ -58,17 +59,19 @@ void make_algorithm(btBroadphasePair& pair, btDispatcher& dispatcher) {
 
 struct DynamicsWorld::Bullet {
   explicit Bullet(const Settings& settings)
-      : solver(make_solver()),
+      : team(settings.looks_once() ? settings.threads : 1),
+        solver(make_solver()),
         world((settings.looks_once() ? make_soft_world : make_stepper)(
-            {dispatcher, broadphase, *solver, configuration, first_contacts, contact_impulses, moving_statics},
+            {dispatcher, broadphase, *solver, configuration, first_contacts, contact_impulses, moving_statics, team},
             settings)),
         sums_itself(settings.looks_once()) {}
 
+  soft::Team team;
   btDefaultCollisionConfiguration configuration;
   InnerEdges inner_edges;
   Dispatcher dispatcher{configuration, inner_edges};
   ContactPairs pairs;
-  btDbvtBroadphase broadphase{&pairs};
+  Broadphase broadphase{pairs, team};
   std::unique_ptr<btConstraintSolver> solver;
   FirstContacts first_contacts;
   ContactImpulses contact_impulses;
@@ -79,7 +82,6 @@ struct DynamicsWorld::Bullet {
 
 DynamicsWorld::DynamicsWorld(const core::Vec3& gravity, const Settings& settings)
     : bullet_(std::make_unique<Bullet>(settings)) {
-  bullet_->broadphase.m_cupdates = 10;  // per cent of the pairs that each look tests for whether they are still near
   // One query finds one corner of a box on a plane, and a sliding box loses it again in the next substep. Five tilted
   // queries, 72 degrees apart, find all four corners however the box is turned. They are skipped while a manifold has
   // four points.
@@ -100,7 +102,7 @@ DynamicsWorld::~DynamicsWorld() {
 }
 
 void DynamicsWorld::insert(btRigidBody& body, int rank, bool collides) {
-  bullet_->broadphase.m_gid = rank - 1;  // the next proxy gets the id after this one
+  bullet_->broadphase.number_next(rank);
   bullet_->world->addRigidBody(&body);
   if (is_moving_static(body)) begin_moving(body);
   if (!collides) {  // leaves all collision groups, and removes pairs made on insertion

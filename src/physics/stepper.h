@@ -10,6 +10,9 @@ namespace aurasim::physics {
 
 class ContactImpulses;
 class FirstContacts;
+namespace soft {
+class Team;
+}
 struct Settings;
 
 /// The parts that a world uses; all have to outlive it.
@@ -21,6 +24,7 @@ struct WorldParts {
   FirstContacts& first_contacts;
   ContactImpulses& contact_impulses;
   const std::vector<btRigidBody*>& moving_statics;
+  soft::Team& team;
 };
 
 /// Bullet's world, as each solver extends it.

@@ -31,19 +31,18 @@ std::vector<core::BodyRecord> heap(core::Scene& scene) {
   return bodies;
 }
 
-TEST(SoftThreads, TheirNumberChangesNoBit) {
-  core::Scene scene = scene_of_all_shapes();
-  const std::vector<core::BodyRecord> bodies = heap(scene);
+void expect_same_bits(const core::Scene& scene, const std::vector<core::BodyRecord>& bodies, double block_m,
+                      int steps) {
   std::vector<core::BodyRecord> alone;
   for (const int threads : {1, 2, 3, 8}) {
     Settings settings;
     settings.solver = Solver::kSoftStep;
-    settings.block_m = 6;
+    settings.block_m = block_m;
     settings.continuous = true;
     settings.threads = threads;
     RegionWorld world(scene, settings);
     world.add(bodies);
-    run(world, 150);
+    run(world, steps);
     if (threads == 1) alone.assign(world.records().begin(), world.records().end());
     ASSERT_EQ(world.records().size(), alone.size());
     for (std::size_t i = 0; i < alone.size(); ++i) {
@@ -51,6 +50,31 @@ TEST(SoftThreads, TheirNumberChangesNoBit) {
       ASSERT_EQ(world.records()[i].w_WB, alone[i].w_WB) << threads << " threads, body " << i;
     }
   }
+}
+
+TEST(SoftThreads, TheirNumberChangesNoBit) {
+  core::Scene scene = scene_of_all_shapes();
+  const std::vector<core::BodyRecord> bodies = heap(scene);
+  expect_same_bits(scene, bodies, 6, 150);
+}
+
+/// Small blocks, so that the threads have many, with a chain over all of them and a few giants.
+TEST(SoftThreads, TheirNumberChangesNoBitOverManyBlocks) {
+  core::Scene scene = scene_of(core::Box{core::Vec3::Constant(0.2)});
+  core::Prototype plate = scene.prototypes[0];
+  plate.shape = static_cast<std::uint32_t>(scene.shapes.size());
+  plate.mass_kg = 20;
+  scene.shapes.push_back({"plate", core::Box{{3, 1, 0.1}}});
+  scene.prototypes.push_back(plate);
+  for (int i = 0; i < 900; ++i) place_body(scene, 0, {0.42 * (i % 30), 0.42 * (i / 30 % 10), 0.2 + 0.4 * (i / 300)});
+  for (int i = 0; i < 4; ++i) place_body(scene, 1, {0.2 + 6.1 * i, 2, 1.35});
+  for (int i = 0; i < 30; ++i) {
+    place_body(scene, 0, {0.41 * i, 2, 1.7});
+    const std::uint64_t id = scene.bodies.size() - 1;
+    if (i > 0) add_joint(scene, core::BallJoint{}, id - 1, id, {0.41 * i - 0.205, 2, 1.7});
+  }
+  expect_same_bits(scene, initial_records(scene), 2, 60);
+  expect_same_bits(scene, initial_records(scene), 4, 60);
 }
 
 }  // namespace

@@ -21,7 +21,6 @@
 #include "physics/soft/convert.h"
 #include "physics/soft/islands.h"
 #include "physics/soft/kept_contacts.h"
-#include "physics/soft/threads.h"
 
 namespace aurasim::physics {
 namespace {
@@ -109,14 +108,14 @@ btVector3 SoftContacts::way(const btCollisionObject& object, const btVector3& gr
 
 void SoftContacts::look(btOverlappingPairCache& pairs, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info,
                         const btVector3& gravity) {
-  constexpr int kAtOnce = 512;  // pairs
+  constexpr int kAtOnce = 128;  // pairs
   gravity_ = gravity;
   for (List& list : lists_) {
     list.touches.clear(), list.touches_of_sleepers.clear(), list.patches.clear(), list.will_meet.clear();
   }
   const int count = pairs.getNumOverlappingPairs();
   std::atomic<int> taken = 0;
-  soft::side_by_side(count > kAtOnce ? threads_ : 1, [&](const soft::Worker& worker) {
+  team_.side_by_side([&](const soft::Worker& worker) {
     List& list = lists_[static_cast<std::size_t>(worker.number)];
     for (int first = taken.fetch_add(kAtOnce); first < count; first = taken.fetch_add(kAtOnce)) {
       look(list, pairs, first, std::min(count, first + kAtOnce), dispatcher, info);

@@ -11,6 +11,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 
 #include "physics/soft/ahead.h"
+#include "physics/soft/threads.h"
 #include "physics/soft/touch.h"
 
 class btCollisionDispatcher;
@@ -31,13 +32,14 @@ struct SoftAhead {
 class SoftContacts {
  public:
   /// `ahead`: also makes contacts of bodies that will touch within the step.
-  SoftContacts(double step_s, bool ahead, int threads, const SoftIslands& islands, const FirstContacts& first_contacts)
+  SoftContacts(double step_s, bool ahead, soft::Team& team, const SoftIslands& islands,
+               const FirstContacts& first_contacts)
       : step_s_(static_cast<btScalar>(step_s)),
         looks_ahead_(ahead),
-        threads_(threads),
+        team_(team),
         islands_(islands),
         first_contacts_(first_contacts),
-        lists_(static_cast<std::size_t>(threads)) {}
+        lists_(static_cast<std::size_t>(team.size())) {}
 
   /// Finds the contacts of all pairs with an awake body. Pairs of sleepers are skipped if their islands are known.
   void look(btOverlappingPairCache& pairs, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info,
@@ -89,7 +91,7 @@ class SoftContacts {
 
   btScalar step_s_;
   bool looks_ahead_;
-  int threads_;
+  soft::Team& team_;
   btVector3 gravity_{0, 0, 0};
   const SoftIslands& islands_;
   const FirstContacts& first_contacts_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
@@ -65,25 +66,62 @@ void set_own(soft::JointBlock& block, int lane, const JointAxes& axes, double su
 
 SoftJoints::SoftJoints(double substep_s) : substep_s_(substep_s), h_s_(static_cast<Real>(substep_s)) {}
 
-void SoftJoints::add(btTypedConstraint& joint, std::int32_t first, std::int32_t second) {
-  joints_.push_back({&joint, first, second, 0});
-  if (axes_of(joint).b_is_first) std::swap(joints_.back().a, joints_.back().b);
+void SoftJoints::put(std::size_t i, btTypedConstraint& joint, std::int32_t first, std::int32_t second) {
+  const JointAxes& axes = axes_of(joint);
+  joints_[i] = {&joint, first, second, what_of(axes)};
+  if (axes.b_is_first) std::swap(joints_[i].a, joints_[i].b);
 }
 
-void SoftJoints::build(std::size_t movers, std::span<const SoftInertia> inertias, int threads) {
+void SoftJoints::build(std::size_t movers, std::span<const SoftInertia> inertias, soft::Team& team) {
   kinds_.clear();
-  for (Joint& joint : joints_) {
-    joint.what = what_of(axes_of(*joint.joint));
+  for (const Joint& joint : joints_) {
     const auto place = std::ranges::lower_bound(kinds_, joint.what);
     if (place == kinds_.end() || *place != joint.what) kinds_.insert(place, joint.what);
   }
-  layout_.clear(movers, kinds_.size());
-  for (const Joint& joint : joints_) {
-    layout_.add(joint.a, joint.b,
-                static_cast<std::size_t>(std::ranges::lower_bound(kinds_, joint.what) - kinds_.begin()));
+  layout_.clear(movers, kinds_.size(), joints_.size());
+  find_groups(movers);
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const Joint& joint = joints_[i];
+    const auto group =
+        static_cast<std::size_t>(groups_[static_cast<std::size_t>(first_of(std::max(joint.a, joint.b)))]);
+    const auto kind = std::ranges::lower_bound(kinds_, joint.what) - kinds_.begin();
+    layout_.put(i, joint.a, joint.b, static_cast<std::size_t>(kind), SoftPhase::kInside, group % kSoftGroups);
   }
-  blocks_.assign(layout_.place(), soft::JointBlock{});
-  soft::for_each_side_by_side(threads, joints_.size(), [&](std::size_t i) { fill(i, inertias); });
+  blocks_.resize(layout_.place(team));
+  team.side_by_side([&](const soft::Worker& worker) {
+    const auto [first_block, last_block] = worker.share(blocks_.size());
+    for (std::size_t i = first_block; i < last_block; ++i) blocks_[i] = soft::JointBlock{};
+    worker.wait();
+    const auto [first, last] = worker.share(joints_.size());
+    for (std::size_t i = first; i < last; ++i) fill(i, inertias);
+  });
+}
+
+/// Numbers the mechanisms: bodies that joints bind together.
+void SoftJoints::find_groups(std::size_t movers) {
+  parents_.resize(movers);
+  std::iota(parents_.begin(), parents_.end(), 0);
+  for (const Joint& joint : joints_) {
+    if (joint.a <= 0 || joint.b <= 0) continue;
+    const std::int32_t one = first_of(joint.a), other = first_of(joint.b);
+    parents_[static_cast<std::size_t>(std::max(one, other))] = std::min(one, other);
+  }
+  groups_.assign(movers, -1);
+  std::int32_t count = 0;
+  for (const Joint& joint : joints_) {
+    std::int32_t& group = groups_[static_cast<std::size_t>(first_of(std::max(joint.a, joint.b)))];
+    if (group < 0) group = count++;
+  }
+}
+
+/// First mover of the mechanism. Halves the path to it.
+std::int32_t SoftJoints::first_of(std::int32_t mover) {
+  auto at = static_cast<std::size_t>(mover);
+  while (parents_[at] != static_cast<std::int32_t>(at)) {
+    parents_[at] = parents_[static_cast<std::size_t>(parents_[at])];
+    at = static_cast<std::size_t>(parents_[at]);
+  }
+  return static_cast<std::int32_t>(at);
 }
 
 void SoftJoints::fill(std::size_t at, std::span<const SoftInertia> inertias) {
@@ -122,42 +160,47 @@ void SoftJoints::fill(std::size_t at, std::span<const SoftInertia> inertias) {
 }
 
 void SoftJoints::look(const soft::Mover* movers, const soft::Worker& worker) {
-  layout_.for_each_run(worker, [&](std::size_t first, std::size_t count, std::size_t kind) {
+  layout_.sweep(worker, 1, [&](int, std::size_t first, std::size_t count, std::size_t kind) {
     soft::kernel().look_at_joints(&blocks_[first], count, kinds_[kind], movers, h_s_);
   });
 }
 
-void SoftJoints::begin(soft::Mover* movers, const soft::Worker& worker) {
-  layout_.for_each_run(worker, [&](std::size_t first, std::size_t count, std::size_t kind) {
-    soft::kernel().begin_joints(&blocks_[first], count, kinds_[kind], movers, h_s_);
+void SoftJoints::begin_and_solve(soft::Mover* movers, int sweeps, const soft::Worker& worker) {
+  if (worker.is_first()) core::Progress::mark();
+  layout_.sweep(worker, 1 + sweeps, [&](int time, std::size_t first, std::size_t count, std::size_t kind) {
+    if (time == 0) soft::kernel().begin_joints(&blocks_[first], count, kinds_[kind], movers, h_s_);
+    if (time > 0) soft::kernel().solve_joints(&blocks_[first], count, kinds_[kind], movers);
   });
 }
 
-void SoftJoints::solve(soft::Mover* movers, const soft::Worker& worker) {
-  layout_.for_each_run(worker, [&](std::size_t first, std::size_t count, std::size_t kind) {
-    soft::kernel().solve_joints(&blocks_[first], count, kinds_[kind], movers);
-    core::Progress::mark();
+void SoftJoints::look_and_solve(soft::Mover* movers, int sweeps, const soft::Worker& worker) {
+  if (worker.is_first()) core::Progress::mark();
+  layout_.sweep(worker, 1 + sweeps, [&](int time, std::size_t first, std::size_t count, std::size_t kind) {
+    if (time == 0) soft::kernel().look_at_joints(&blocks_[first], count, kinds_[kind], movers, h_s_);
+    if (time > 0) soft::kernel().solve_joints(&blocks_[first], count, kinds_[kind], movers);
   });
 }
 
-void SoftJoints::finish() {
-  for (std::size_t i = 0; i < joints_.size(); ++i) {
-    const soft::JointBlock& block = blocks_[layout_.block(i)];
-    const int lane = layout_.lane(i);
-    JointAxes& axes = axes_of(*joints_[i].joint);
-    const unsigned what = joints_[i].what;
-    axes.drive_impulse = 0;
-    if ((what & soft::kJointMotor) != 0) axes.drive_impulse = static_cast<double>(block.motor_took[lane]);
-    if ((what & soft::kJointDrive) != 0) axes.drive_impulse = static_cast<double>(block.drive.impulse[lane]);
-    Real last = static_cast<Real>(std::abs(axes.drive_impulse));
-    if ((what & soft::kJointSpring) != 0) last = std::max(last, std::abs(block.spring.impulse[lane]));
-    if ((what & soft::kJointFriction) != 0) last = std::max(last, std::abs(block.rubbed[lane]));
-    for (int axis = 0; axis < 6; ++axis) {
-      if ((what & soft::kHeldAxis << axis) != 0) last = std::max(last, std::abs(block.axes[axis].impulse[lane]));
-    }
-    joints_[i].joint->internalSetAppliedImpulse(last);
-    if (std::max(last, block.took[lane]) >= block.breaks[lane]) joints_[i].joint->setEnabled(false);
+void SoftJoints::finish(soft::Team& team) {
+  team.for_each(joints_.size(), [this](std::size_t i) { finish(i); });
+}
+
+void SoftJoints::finish(std::size_t i) {
+  const soft::JointBlock& block = blocks_[layout_.block(i)];
+  const int lane = layout_.lane(i);
+  JointAxes& axes = axes_of(*joints_[i].joint);
+  const unsigned what = joints_[i].what;
+  axes.drive_impulse = 0;
+  if ((what & soft::kJointMotor) != 0) axes.drive_impulse = static_cast<double>(block.motor_took[lane]);
+  if ((what & soft::kJointDrive) != 0) axes.drive_impulse = static_cast<double>(block.drive.impulse[lane]);
+  Real last = static_cast<Real>(std::abs(axes.drive_impulse));
+  if ((what & soft::kJointSpring) != 0) last = std::max(last, std::abs(block.spring.impulse[lane]));
+  if ((what & soft::kJointFriction) != 0) last = std::max(last, std::abs(block.rubbed[lane]));
+  for (int axis = 0; axis < 6; ++axis) {
+    if ((what & soft::kHeldAxis << axis) != 0) last = std::max(last, std::abs(block.axes[axis].impulse[lane]));
   }
+  joints_[i].joint->internalSetAppliedImpulse(last);
+  if (std::max(last, block.took[lane]) >= block.breaks[lane]) joints_[i].joint->setEnabled(false);
 }
 
 }  // namespace aurasim::physics

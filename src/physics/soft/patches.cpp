@@ -103,20 +103,21 @@ Real SoftPatches::load(const SoftPatch& patch, Real inv_mass, Real gravity) cons
   return gravity > 0 ? pressed * inv_mass / (gravity * substep_s_) : 0;
 }
 
-void SoftPatches::clear(std::size_t movers) {
-  patches_.clear();
-  layout_.clear(movers, soft::kMostPoints + 1);
+void SoftPatches::clear(std::size_t movers, std::size_t patches) {
+  patches_.resize(patches);
+  layout_.clear(movers, soft::kMostPoints + 1, patches);
 }
 
-void SoftPatches::add(SoftPatch& patch, std::int32_t a, std::int32_t b, SoftPhase phase) {
-  patches_.push_back(&patch);
-  layout_.add(a, b, static_cast<std::size_t>(patch.count), phase);
+void SoftPatches::put(std::size_t i, SoftPatch& patch, std::int32_t a, std::int32_t b, SoftPhase phase,
+                      std::size_t group) {
+  patches_[i] = &patch;
+  layout_.put(i, a, b, static_cast<std::size_t>(patch.count), phase, group);
 }
 
-void SoftPatches::build(const Mover* movers, const SoftInertia* inertias, const Real (&gravity)[3], int threads) {
-  blocks_.resize(layout_.place());
-  bounces_ = std::ranges::any_of(patches_, [](const SoftPatch* patch) { return patch->restitution > 0; });
-  soft::side_by_side(threads, [&](const soft::Worker& worker) {
+void SoftPatches::build(const Mover* movers, const SoftInertia* inertias, const Real (&gravity)[3], soft::Team& team) {
+  blocks_.resize(layout_.place(team));
+  bounces_.assign(static_cast<std::size_t>(team.employed()), 0);
+  team.side_by_side([&](const soft::Worker& worker) {
     const auto [first_block, last_block] = worker.share(blocks_.size());
     std::fill(blocks_.begin() + static_cast<std::ptrdiff_t>(first_block),
               blocks_.begin() + static_cast<std::ptrdiff_t>(last_block), soft::Block{});
@@ -125,6 +126,7 @@ void SoftPatches::build(const Mover* movers, const SoftInertia* inertias, const 
     for (std::size_t i = first; i < last; ++i) {
       if (i + kPrefetchDistance / 2 < last) prefetch(patches_[i + kPrefetchDistance / 2], sizeof(SoftPatch));
       fill(i, movers, inertias, gravity);
+      if (patches_[i]->restitution > 0) bounces_[static_cast<std::size_t>(worker.number)] = 1;
     }
   });
 }
@@ -188,24 +190,25 @@ void SoftPatches::fill(std::size_t at, const Mover* movers, const SoftInertia* i
 }
 
 void SoftPatches::warm_start(Mover* movers, const soft::Worker& worker) {
-  layout_.for_each_run(worker, [&](std::size_t first, std::size_t count, std::size_t points) {
+  if (worker.is_first()) core::Progress::mark();
+  layout_.sweep(worker, 1, [&](int, std::size_t first, std::size_t count, std::size_t points) {
     soft::kernel().warm_start(&blocks_[first], count, static_cast<int>(points), movers);
-    core::Progress::mark();
   });
 }
 
 void SoftPatches::solve(Mover* movers, const soft::Substep& substep, const soft::Worker& worker) {
-  layout_.for_each_run(worker, [&](std::size_t first, std::size_t count, std::size_t points) {
+  if (worker.is_first()) core::Progress::mark();
+  layout_.sweep(worker, 1, [&](int, std::size_t first, std::size_t count, std::size_t points) {
     soft::kernel().solve(&blocks_[first], count, static_cast<int>(points), movers, substep);
-    core::Progress::mark();
   });
 }
 
 void SoftPatches::bounce(Mover* movers, const soft::Worker& worker) {
-  for (int sweep = 0; sweep < kBounceSweeps && bounces_; ++sweep) {
-    layout_.for_each_run(worker, [&](std::size_t first, std::size_t count, std::size_t points) {
+  if (std::ranges::count(bounces_, 1) == 0) return;
+  for (int sweep = 0; sweep < kBounceSweeps; ++sweep) {
+    if (worker.is_first()) core::Progress::mark();
+    layout_.sweep(worker, 1, [&](int, std::size_t first, std::size_t count, std::size_t points) {
       soft::kernel().bounce(&blocks_[first], count, static_cast<int>(points), movers, -kRestSpeed_m_s);
-      core::Progress::mark();
     });
   }
 }
@@ -229,8 +232,8 @@ Real SoftPatches::tallied(std::size_t i, int point) const { return sums_[layout_
 
 /// Impulses of friction belong to the patch. Each point gets them, in fields that Bullet keeps for a point that it
 /// finds again, so they survive when a point is lost.
-void SoftPatches::remember(int threads) const {
-  soft::side_by_side(threads, [&](const soft::Worker& worker) {
+void SoftPatches::remember(soft::Team& team) const {
+  team.side_by_side([&](const soft::Worker& worker) {
     const auto [first, last] = worker.share(patches_.size());
     for (std::size_t i = first; i < last; ++i) {
       if (i + kPrefetchDistance < last) {

@@ -23,12 +23,12 @@ class SoftPatches {
  public:
   SoftPatches(double step_s, int substeps);
 
-  void clear(std::size_t movers);
-  /// Adds a patch between two movers. The patches of an island have to be added in an order that follows from the
-  /// island alone.
-  void add(SoftPatch& patch, std::int32_t a, std::int32_t b, SoftPhase phase);
-  /// Lays out all added patches. `inertias`: by mover; gravity in m/s^2.
-  void build(const soft::Mover* movers, const SoftInertia* inertias, const soft::Real (&gravity)[3], int threads);
+  void clear(std::size_t movers, std::size_t patches);
+  /// Sets the i-th patch, between two movers. The patches of an island have to come in an order that follows from the
+  /// island alone. `group`: as in SoftLayout::put(). Several threads may set different patches.
+  void put(std::size_t i, SoftPatch& patch, std::int32_t a, std::int32_t b, SoftPhase phase, std::size_t group);
+  /// Lays out all patches. `inertias`: by mover; gravity in m/s^2.
+  void build(const soft::Mover* movers, const SoftInertia* inertias, const soft::Real (&gravity)[3], soft::Team& team);
 
   // The next three are called by each worker for its share. They return when all workers are done.
   void warm_start(soft::Mover* movers, const soft::Worker& worker);
@@ -42,6 +42,7 @@ class SoftPatches {
   /// bounce().
   void tally(const soft::Worker& worker);
   std::size_t size() const { return patches_.size(); }
+  const SoftLoad& load() const { return layout_.load(); }
   const SoftPatch& patch(std::size_t i) const { return *patches_[i]; }
   std::int32_t mover_a(std::size_t i) const { return layout_.a(i); }
   std::int32_t mover_b(std::size_t i) const { return layout_.b(i); }
@@ -50,7 +51,7 @@ class SoftPatches {
 
   /// Writes the impulses into the manifolds for the next step. In patches ahead of time, notes whether they have
   /// pressed.
-  void remember(int threads) const;
+  void remember(soft::Team& team) const;
 
  private:
   /// A spring with damper that cannot overshoot in a substep, as shares of a rigid contact's impulse.
@@ -69,12 +70,12 @@ class SoftPatches {
 
   soft::Real substep_s_;
   soft::Real light_hertz_, heavy_hertz_;  ///< frequencies of the springs between bodies, by load
-  std::vector<SoftPatch*> patches_;       ///< in the order of add()
-  SoftLayout layout_;                     ///< the kind is the number of points
+  std::vector<SoftPatch*> patches_;
+  SoftLayout layout_{SoftLayout::Waits::kInEachPhase};  ///< the kind is the number of points
   std::vector<soft::Block> blocks_;
   bool tallies_ = false;
-  std::vector<Sums> sums_;  ///< by block
-  bool bounces_ = false;    ///< some patch has restitution
+  std::vector<Sums> sums_;             ///< by block
+  std::vector<std::uint8_t> bounces_;  ///< by thread: some patch has restitution
 };
 
 }  // namespace aurasim::physics

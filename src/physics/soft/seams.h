@@ -52,4 +52,24 @@ inline SoftPhase phase_of(const SoftPlace& a, const SoftPlace& b) {
   return a.corner == b.corner ? SoftPhase::kCorners : SoftPhase::kGiants;
 }
 
+/// Number of a contact's group in its phase, below kSoftGroups. `place`: of one of the two bodies. Groups that are 16
+/// blocks apart have the same number, and count as one.
+inline constexpr std::size_t kSoftGroups = 512;
+inline std::size_t group_of(SoftPhase phase, const SoftPlace& place) {
+  const auto number = [](const core::Block& block) {
+    return static_cast<std::size_t>(block.x & 15) << 4U | static_cast<std::size_t>(block.y & 15);
+  };
+  switch (phase) {
+    case SoftPhase::kInside:
+      return number(place.block);
+    case SoftPhase::kEdges:
+      return number(place.edge) + (place.edge_runs_along_x ? kSoftGroups / 2 : 0);
+    case SoftPhase::kCorners:
+      return number(place.corner);
+    case SoftPhase::kGiants:
+      break;
+  }
+  return 0;
+}
+
 }  // namespace aurasim::physics

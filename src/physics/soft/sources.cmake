@@ -2,6 +2,7 @@
 set(soft_step_sources
   soft/ahead.cpp
   soft/contacts.cpp
+  soft/flight.cpp
   soft/islands.cpp
   soft/joints.cpp
   soft/kept_contacts.cpp
@@ -12,6 +13,7 @@ set(soft_step_sources
   soft/layout.cpp
   soft/patches.cpp
   soft/step.cpp
+  soft/threads.cpp
   soft/world.cpp)
 
 # One file for each set of instructions, chosen at run time: never in a unity build with others. Vectors are passed by

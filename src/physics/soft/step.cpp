@@ -1,7 +1,9 @@
 #include "physics/soft/step.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -16,6 +18,7 @@
 #include "physics/prefetch.h"
 #include "physics/settings.h"
 #include "physics/soft/convert.h"
+#include "physics/soft/flight.h"
 #include "physics/soft/joints.h"
 #include "physics/soft/patches.h"
 #include "physics/soft/seams.h"
@@ -33,65 +36,13 @@ constexpr Real kTopPush_m_s = 3;
 /// have moved.
 constexpr int kJointSweeps = 4, kLastJointSweeps = 2;
 
-/// The turn by the rotation vector v, rad. Uses the series up to half a radian; longer vectors are halved first and the
-/// turn is doubled as often.
-btQuaternion turn_by(btVector3 v) {
-  int halved = 0;
-  for (; v.length2() > 1 && halved < 20; ++halved) v /= 2;
-  const btScalar x2 = v.length2() / 4;  // square of half the angle
-  const btScalar cosine = 1 - x2 / 2 * (1 - x2 / 12 * (1 - x2 / 30 * (1 - x2 / 56 * (1 - x2 / 90 * (1 - x2 / 132)))));
-  const btScalar sinc = 1 - x2 / 6 * (1 - x2 / 20 * (1 - x2 / 42 * (1 - x2 / 72 * (1 - x2 / 110 * (1 - x2 / 156)))));
-  btQuaternion q(v.x() / 2 * sinc, v.y() / 2 * sinc, v.z() / 2 * sinc, cosine);
-  for (; halved > 0; --halved) q *= q;
-  return q;
-}
-
-/// Accelerations of a body by the forces on it.
-struct Pushed {
-  btVector3 v{0, 0, 0}, w{0, 0, 0};
-  bool any = false;
-};
-Pushed pushed(const btRigidBody& body) {
-  if (body.getTotalForce().isZero() && body.getTotalTorque().isZero()) return {};
-  return {body.getInvMass() * body.getTotalForce(), body.getInvInertiaTensorWorld() * body.getTotalTorque(), true};
-}
-
-/// Moves a body without forces: on its parabola, with free rotation.
-void fly_freely(btRigidBody& body, const btVector3& gravity, btScalar step_s) {
-  const btTransform& start = body.getWorldTransform();
-  const btVector3 v = body.getLinearVelocity();
-  const btVector3 p = start.getOrigin() + step_s * (v + gravity * (step_s / 2));
-  body.setLinearVelocity(v + step_s * gravity);
-  if (const std::optional<core::Vec3> inertia = tumbling_inertia(body)) {
-    const Rotation now{from_bullet(start.getBasis()), from_bullet(body.getAngularVelocity())};
-    const Rotation after = rotate_freely(now, *inertia, static_cast<double>(step_s));
-    body.setAngularVelocity(to_bullet(after.w_WB));
-    body.proceedToTransform(btTransform(to_bullet(after.R_WB), p));
-  } else if (!body.getAngularVelocity().isZero()) {
-    const btQuaternion q = turn_by(body.getAngularVelocity() * step_s) * start.getRotation();
-    body.proceedToTransform(btTransform(q.normalized(), p));
-  } else {
-    body.proceedToTransform(btTransform(start.getBasis(), p));
-  }
-}
-
-/// Moves a body that touches nothing. Half of a torque's impulse acts before the turn and half after.
-void fly(btRigidBody& body, const btVector3& gravity, btScalar step_s) {
-  const Pushed push = pushed(body);
-  if (!push.any) return fly_freely(body, gravity, step_s);
-  const btVector3 half = push.w * (step_s / 2);
-  body.setAngularVelocity(body.getAngularVelocity() + half);
-  fly_freely(body, gravity + push.v, step_s);
-  body.setAngularVelocity(body.getAngularVelocity() + half);
-}
-
 }  // namespace
 
 struct SoftStep::Impl {
   static constexpr std::int32_t kHeld = -1;
 
-  explicit Impl(const Settings& settings)
-      : threads(settings.threads),
+  Impl(const Settings& settings, soft::Team& its_team)
+      : team(its_team),
         step_s(static_cast<btScalar>(settings.step_s)),
         h_s(static_cast<Real>(settings.step_s / settings.substeps)),
         substeps(settings.substeps),
@@ -110,6 +61,13 @@ struct SoftStep::Impl {
     std::size_t mover;
     Real v[3], w[3];
   };
+  struct alignas(64) PushedMovers {
+    std::vector<PushedMover> all;  ///< ascending mover
+  };
+  struct Held {
+    btRigidBody* body;
+    std::size_t group;
+  };
 
   bool is_held(int user_index) const {
     const auto place = static_cast<std::size_t>(user_index);
@@ -126,16 +84,19 @@ struct SoftStep::Impl {
   void make_room(std::size_t moving_statics);
   void take_in_statics(std::span<btRigidBody* const> moving_statics);
   void hold(int user_index);
+  void order_by_block();
   void take_in(std::size_t i);
   void take_in_row(std::size_t row);
-  void take_in_pushes();
+  void take_in_pushes(std::size_t first, std::size_t last, std::vector<PushedMover>& pushes) const;
+  void take_in_patches(std::span<const SoftTouch> touches, SoftContacts& contacts);
+  void take_in_joints(std::span<btTypedConstraint* const> joint_list);
   SoftPhase phase_of(std::int32_t a, std::int32_t b) const;
   void show(std::size_t i) const;
   void prefetch_after(std::size_t i) const;
   void run(const soft::Worker& worker);
   void tell(ContactImpulses& impulses) const;
 
-  int threads;
+  soft::Team& team;
   btScalar step_s;
   Real h_s;
   int substeps;
@@ -145,22 +106,24 @@ struct SoftStep::Impl {
   std::vector<std::int32_t> mover_at;
   std::vector<std::int32_t> mover_of_static;  ///< by -1 - user index; 0: it stands
   std::vector<btRigidBody*> flying;
-  std::vector<btRigidBody*> held;  ///< bodies by mover
+  std::vector<btRigidBody*> held;  ///< bodies by mover; block by block, if there are several threads
+  std::vector<Held> unordered;
   /// in whole rows: an empty row and those of moving statics, if any; then those of bodies
   std::vector<Mover> all_movers;
   /// movers of bodies, the first of which never moves; those of moving statics lie before them
   Mover* movers = nullptr;
-  std::vector<soft::Tumblers> steady;    ///< by row of moving statics
-  std::vector<soft::Tumblers> tumblers;  ///< by row of bodies
-  std::vector<SoftInertia> inertias;     ///< by mover
-  std::vector<Body> bodies;              ///< by mover
-  std::vector<SoftPlace> places;         ///< by mover
-  std::vector<PushedMover> pushes;       ///< ascending mover
+  std::vector<soft::Tumblers> steady;       ///< by row of moving statics
+  std::vector<soft::Tumblers> tumblers;     ///< by row of bodies
+  std::vector<SoftInertia> inertias;        ///< by mover
+  std::vector<Body> bodies;                 ///< by mover
+  std::vector<SoftPlace> places;            ///< by mover
+  std::vector<PushedMovers> pushes;         ///< by thread
+  std::vector<std::size_t> patches_before;  ///< by thread: number of patches of the threads before it
   SoftPatches patches;
   SoftJoints joints;
 };
 
-SoftStep::SoftStep(const Settings& settings) : impl_(std::make_unique<Impl>(settings)) {}
+SoftStep::SoftStep(const Settings& settings, soft::Team& team) : impl_(std::make_unique<Impl>(settings, team)) {}
 SoftStep::~SoftStep() = default;
 
 void SoftStep::Impl::hold(int user_index) {
@@ -181,22 +144,34 @@ void SoftStep::Impl::take_in(std::span<btRigidBody* const> awake, std::span<btRi
   held.assign(1, nullptr);
   flying.clear();
   for (btRigidBody* body : awake) {
-    if (is_held(body->getUserIndex())) {
-      mover_at[static_cast<std::size_t>(body->getUserIndex())] = static_cast<std::int32_t>(held.size());
-      held.push_back(body);
-    } else {
-      flying.push_back(body);
-    }
+    (is_held(body->getUserIndex()) ? held : flying).push_back(body);
+  }
+  if (team.employed() > 1) order_by_block();
+  for (std::size_t i = 1; i < held.size(); ++i) {
+    mover_at[static_cast<std::size_t>(held[i]->getUserIndex())] = static_cast<std::int32_t>(i);
   }
   make_room(moving_statics.size());
   take_in_statics(moving_statics);
-  soft::side_by_side(threads, [this](const soft::Worker& worker) {
+  team.side_by_side([this](const soft::Worker& worker) {
     const auto [first_flying, last_flying] = worker.share(flying.size());
     for (std::size_t i = first_flying; i < last_flying; ++i) fly(*flying[i], gravity, step_s);
     const auto [first, last] = worker.share(tumblers.size());
     for (std::size_t row = first; row < last; ++row) take_in_row(row);
+    take_in_pushes(first * soft::kLanes, last * soft::kLanes, pushes[static_cast<std::size_t>(worker.number)].all);
   });
-  take_in_pushes();
+}
+
+/// Sorts the bodies by block, so that what a thread works on lies together. The order of movers changes no bit.
+void SoftStep::Impl::order_by_block() {
+  unordered.resize(held.size());
+  team.for_each(held.size() - 1, [this](std::size_t i) {
+    unordered[i + 1] = {held[i + 1], group_of(SoftPhase::kInside, {.block = place_of(*held[i + 1]).block})};
+  });
+  std::array<std::size_t, kSoftGroups + 1> next{};
+  for (std::size_t i = 1; i < held.size(); ++i) ++next[unordered[i].group + 1];
+  next[0] = 1;
+  for (std::size_t group = 1; group < kSoftGroups; ++group) next[group] += next[group - 1];
+  for (std::size_t i = 1; i < held.size(); ++i) held[next[unordered[i].group]++] = unordered[i].body;
 }
 
 void SoftStep::Impl::make_room(std::size_t moving_statics) {
@@ -209,6 +184,7 @@ void SoftStep::Impl::make_room(std::size_t moving_statics) {
   inertias.resize(held.size());
   bodies.resize(held.size());
   places.resize(held.size());
+  pushes.resize(static_cast<std::size_t>(team.size()));
 }
 
 /// Makes the movers of moving statics. They go on evenly, whatever they touch.
@@ -225,16 +201,51 @@ void SoftStep::Impl::take_in_statics(std::span<btRigidBody* const> moving_static
   }
 }
 
-void SoftStep::Impl::take_in_pushes() {
-  pushes.clear();
-  for (std::size_t i = 1; i < held.size() && held[i] != nullptr; ++i) {
+/// Of movers [first, last).
+void SoftStep::Impl::take_in_pushes(std::size_t first, std::size_t last, std::vector<PushedMover>& of_thread) const {
+  of_thread.clear();
+  for (std::size_t i = std::max<std::size_t>(1, first); i < last && held[i] != nullptr; ++i) {
     const Pushed push = pushed(*held[i]);
     if (!push.any) continue;
-    PushedMover& mover = pushes.emplace_back();
+    PushedMover& mover = of_thread.emplace_back();
     mover.mover = i;
     soft::from_bullet(push.v * btScalar(h_s), mover.v);
     soft::from_bullet(push.w * btScalar(h_s), mover.w);
   }
+}
+
+/// Lists the patches in the order of touches.
+void SoftStep::Impl::take_in_patches(std::span<const SoftTouch> touches, SoftContacts& contacts) {
+  patches_before.assign(static_cast<std::size_t>(team.employed()) + 1, 0);
+  team.side_by_side([&](const soft::Worker& worker) {
+    const std::size_t number = static_cast<std::size_t>(worker.number);
+    const auto [first, last] = worker.share(touches.size());
+    std::size_t count = 0;
+    for (std::size_t i = first; i < last; ++i) count += touches[i].patches;
+    patches_before[number + 1] = count;
+    worker.wait();
+    if (worker.is_first()) {
+      std::partial_sum(patches_before.begin(), patches_before.end(), patches_before.begin());
+      patches.clear(held.size(), patches_before.back());
+    }
+    worker.wait();
+    std::size_t next = patches_before[number];
+    for (std::size_t i = first; i < last; ++i) {
+      const std::int32_t a = mover_of(touches[i].a), b = mover_of(touches[i].b);
+      const SoftPhase phase = phase_of(a, b);
+      const std::size_t group = group_of(phase, places[static_cast<std::size_t>(std::max(0, a))]);
+      for (SoftPatch& patch : contacts.patches_of(touches[i])) patches.put(next++, patch, a, b, phase, group);
+    }
+  });
+}
+
+void SoftStep::Impl::take_in_joints(std::span<btTypedConstraint* const> joint_list) {
+  joints.clear(joint_list.size());
+  team.for_each(joint_list.size(), [&](std::size_t i) {
+    btTypedConstraint& joint = *joint_list[i];
+    joints.put(i, joint, mover_of(joint.getRigidBodyA().getUserIndex()),
+               mover_of(joint.getRigidBodyB().getUserIndex()));
+  });
 }
 
 /// Contacts with statics have a phase of their own, whatever this returns for them.
@@ -295,14 +306,12 @@ void SoftStep::Impl::run(const soft::Worker& worker) {
     for (std::size_t i = std::max<std::size_t>(1, first_row * soft::kLanes); i < last_row * soft::kLanes; ++i) {
       for (int k = 0; k < 3; ++k) movers[i].v[k] += fall[k];
     }
-    for (const PushedMover& push : pushes) {
-      if (push.mover < first_row * soft::kLanes || push.mover >= last_row * soft::kLanes) continue;
+    for (const PushedMover& push : pushes[static_cast<std::size_t>(worker.number)].all) {
       for (int k = 0; k < 3; ++k) movers[push.mover].v[k] += push.v[k], movers[push.mover].w[k] += push.w[k];
     }
     worker.wait();
     patches.warm_start(movers, worker);
-    joints.begin(movers, worker);
-    for (int sweep = 0; sweep < kJointSweeps; ++sweep) joints.solve(movers, worker);
+    joints.begin_and_solve(movers, kJointSweeps, worker);
     substep.pushes = true;
     patches.solve(movers, substep, worker);
     soft::kernel().move(movers, tumblers.data(), first_row, last_row, h_s,
@@ -311,8 +320,7 @@ void SoftStep::Impl::run(const soft::Worker& worker) {
       soft::kernel().move(all_movers.data(), steady.data(), 1, std::max<std::size_t>(1, steady.size()), h_s, {});
     }
     worker.wait();
-    joints.look(movers, worker);
-    for (int sweep = 0; sweep < kLastJointSweeps; ++sweep) joints.solve(movers, worker);
+    joints.look_and_solve(movers, kLastJointSweeps, worker);
     substep.pushes = false;
     patches.solve(movers, substep, worker);
     if (s + 1 < substeps) patches.tally(worker);
@@ -359,29 +367,20 @@ void SoftStep::solve(std::span<btRigidBody* const> bodies, std::span<btRigidBody
   Impl& impl = *impl_;
   impl.gravity = gravity;
   impl.take_in(bodies, moving_statics, touches, joints);
-  impl.patches.clear(impl.held.size());
-  for (const SoftTouch& touch : touches) {
-    const std::int32_t a = impl.mover_of(touch.a), b = impl.mover_of(touch.b);
-    const SoftPhase phase = impl.phase_of(a, b);
-    for (SoftPatch& patch : contacts.patches_of(touch)) impl.patches.add(patch, a, b, phase);
-  }
+  impl.take_in_patches(touches, contacts);
   Real pull[3];
   soft::from_bullet(gravity, pull);
-  impl.patches.build(impl.movers, impl.inertias.data(), pull, impl.threads);
+  impl.patches.build(impl.movers, impl.inertias.data(), pull, impl.team);
   impl.patches.begin_tally(impulses.wanted());
   core::Progress::mark();
-  impl.joints.clear();
-  for (btTypedConstraint* joint : joints) {
-    impl.joints.add(*joint, impl.mover_of(joint->getRigidBodyA().getUserIndex()),
-                    impl.mover_of(joint->getRigidBodyB().getUserIndex()));
-  }
-  impl.joints.build(impl.held.size(), impl.inertias, impl.threads);
-  soft::side_by_side(impl.threads, [&impl](const soft::Worker& worker) { impl.run(worker); });
-  impl.joints.finish();
-  impl.patches.remember(impl.threads);
+  impl.take_in_joints(joints);
+  impl.joints.build(impl.held.size(), impl.inertias, impl.team);
+  impl.team.side_by_side([&impl](const soft::Worker& worker) { impl.run(worker); });
+  impl.joints.finish(impl.team);
+  impl.patches.remember(impl.team);
   core::Progress::mark();
   if (impulses.wanted()) impl.tell(impulses);
-  soft::for_each_side_by_side(impl.threads, impl.held.size() - 1, [&impl](std::size_t i) { impl.show(i + 1); });
+  impl.team.for_each(impl.held.size() - 1, [&impl](std::size_t i) { impl.show(i + 1); });
 }
 
 }  // namespace aurasim::physics

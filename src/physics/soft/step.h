@@ -14,13 +14,16 @@ class btVector3;
 namespace aurasim::physics {
 
 class ContactImpulses;
+namespace soft {
+class Team;
+}
 class SoftContacts;
 struct Settings;
 struct SoftTouch;
 
 class SoftStep {
  public:
-  explicit SoftStep(const Settings& settings);
+  SoftStep(const Settings& settings, soft::Team& team);
   ~SoftStep();
 
   /// Moves and turns `bodies`: all that are awake. `moving_statics` push them, and their own poses are not changed. The

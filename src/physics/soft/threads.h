@@ -2,17 +2,24 @@
 // for each other.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <thread>
+#include <type_traits>
 #include <utility>
-
-#include <omp.h>
+#include <vector>
 
 namespace aurasim::physics::soft {
+
+class Team;
 
 /// One of several threads that share the same work.
 struct Worker {
   int number = 0;
   int of = 1;
+  Team* team = nullptr;
 
   /// This worker's range [first, last) of `count` items.
   std::pair<std::size_t, std::size_t> share(std::size_t count) const {
@@ -21,27 +28,70 @@ struct Worker {
   }
   bool is_first() const { return number == 0; }
   /// Waits until all workers have called it.
-  void wait() const {
-    if (of == 1) return;
-#pragma omp barrier
-  }
+  inline void wait() const;
 };
 
-/// Calls work(Worker) in up to `threads` threads at once.
-template <class Work>
-void side_by_side(int threads, Work&& work) {
-  if (threads == 1) return work(Worker{});
-#pragma omp parallel num_threads(threads)
-  work(Worker{omp_get_thread_num(), omp_get_num_threads()});
-}
+/// The threads of one world. They start when there is work for them first. A thread that waits for
+/// the others looks again and again for some 100 us, then it sleeps.
+class Team {
+ public:
+  /// At most `threads` threads, with the one that calls.
+  explicit Team(int threads);
+  ~Team();
+  Team(const Team&) = delete;
+  Team& operator=(const Team&) = delete;
 
-/// Calls work(i) for each i below `count`, in no order.
-template <class Work>
-void for_each_side_by_side(int threads, std::size_t count, Work&& work) {
-  side_by_side(threads, [&](const Worker& worker) {
-    const auto [first, last] = worker.share(count);
-    for (std::size_t i = first; i < last; ++i) work(i);
-  });
+  /// Number of threads that work, at most.
+  int size() const { return size_; }
+  /// Number of threads that work now.
+  int employed() const { return employed_; }
+  /// Chooses how many threads work from now on. With few bodies the threads would wait for each other longer than they
+  /// work.
+  void employ_for(std::size_t bodies);
+
+  /// Calls work(Worker) in all employed threads at once. Returns when all are done.
+  template <class Work>
+  void side_by_side(Work&& work) {
+    if (employed_ == 1) return work(Worker{});
+    run([](void* job, const Worker& worker) { (*static_cast<std::remove_reference_t<Work>*>(job))(worker); }, &work);
+  }
+  /// Calls work(i) for each i below `count`, in no order.
+  template <class Work>
+  void for_each(std::size_t count, Work&& work) {
+    side_by_side([&](const Worker& worker) {
+      const auto [first, last] = worker.share(count);
+      for (std::size_t i = first; i < last; ++i) work(i);
+    });
+  }
+
+  /// Number of times that all threads have waited for each other.
+  std::uint32_t waits() const { return waits_.load(std::memory_order_relaxed); }
+
+ private:
+  friend struct Worker;
+  using Call = void (*)(void* job, const Worker& worker);
+
+  void run(Call call, const void* job);
+  void serve(int number);
+  void wait(int of);
+  void change(std::atomic<std::uint32_t>& word, std::uint32_t to);
+  void await_change(const std::atomic<std::uint32_t>& word, std::uint32_t from);
+
+  int size_;
+  int employed_ = 1;
+  int spins_;
+  Call call_ = nullptr;
+  void* job_ = nullptr;
+  /// Number of the job, times kMostThreads, plus the number of threads that work on it. 0: the team is dismissed.
+  alignas(64) std::atomic<std::uint32_t> start_{1};
+  alignas(64) std::atomic<std::uint32_t> arrived_{0};  ///< threads that wait for the others
+  alignas(64) std::atomic<std::uint32_t> waits_{0};
+  std::atomic<int> sleepers_{0};
+  std::vector<std::thread> threads_;
+};
+
+inline void Worker::wait() const {
+  if (of > 1) team->wait(of);
 }
 
 }  // namespace aurasim::physics::soft

@@ -8,12 +8,15 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include "core/progress.h"
+#include "physics/bounds.h"
+#include "physics/broadphase.h"
 #include "physics/contact_impulses.h"
 #include "physics/first_contacts.h"
 #include "physics/settings.h"
 #include "physics/soft/contacts.h"
 #include "physics/soft/islands.h"
 #include "physics/soft/step.h"
+#include "physics/soft/threads.h"
 
 namespace aurasim::physics {
 namespace {
@@ -29,13 +32,15 @@ class SoftWorld final : public World {
       : World(&parts.dispatcher, &parts.broadphase, &parts.solver, &parts.configuration),
         first_contacts_(parts.first_contacts),
         contact_impulses_(parts.contact_impulses),
-        contacts_(settings.step_s, settings.continuous, settings.threads, islands_, first_contacts_),
+        contacts_(settings.step_s, settings.continuous, parts.team, islands_, first_contacts_),
         moving_statics_(parts.moving_statics),
-        step_(settings),
+        step_(settings, parts.team),
+        team_(parts.team),
         looks_ahead_(settings.continuous) {}
 
   int stepSimulation(btScalar step_s, int, btScalar) override {
     islands_.call(span_of(m_nonStaticRigidBodies));
+    team_.employ_for(islands_.awake().size());
     damp(step_s);
     bound();
     m_broadphasePairCache->calculateOverlappingPairs(m_dispatcher1);
@@ -104,21 +109,49 @@ class SoftWorld final : public World {
     }
   }
 
-  /// Updates the bounds of objects that may have moved since the last call.
+  /// Updates the bounds of objects that may have moved since the last call. Most of them stay in their boxes.
   void bound() {
-    const btVector3 margin(gContactBreakingThreshold, gContactBreakingThreshold, gContactBreakingThreshold);
-    for (btRigidBody* body : islands_.awake()) {
-      btVector3 low, high;
-      body->getAabb(low, high);
-      if (looks_ahead_) {
-        const btVector3 way = contacts_.way(*body, getGravity()), none(0, 0, 0);
-        btVector3 back = way, on = way;
-        back.setMin(none), on.setMax(none);
-        low += back, high += on;
+    lists_.resize(static_cast<std::size_t>(team_.size()));
+    const std::span<btRigidBody* const> awake = islands_.awake();
+    team_.side_by_side([&](const soft::Worker& worker) {
+      std::vector<Bounded>& outside = lists_[static_cast<std::size_t>(worker.number)].outside;
+      outside.clear();
+      const auto [first, last] = worker.share(awake.size());
+      for (std::size_t i = first; i < last; ++i) {
+        const Bounds bounds = bounds_ahead(*awake[i]);
+        btBroadphaseProxy* const proxy = awake[i]->getBroadphaseHandle();
+        if (!Broadphase::keep_in_box(*proxy, bounds.low, bounds.high)) outside.push_back({proxy, bounds});
       }
-      m_broadphasePairCache->setAabb(body->getBroadphaseHandle(), low - margin, high + margin, m_dispatcher1);
+    });
+    for (const List& list : lists_) {
+      for (const Bounded& object : list.outside) {
+        m_broadphasePairCache->setAabb(object.proxy, object.bounds.low, object.bounds.high, m_dispatcher1);
+      }
     }
   }
+
+  /// Bounds of a body, with its way in the step.
+  Bounds bounds_ahead(const btRigidBody& body) const {
+    const btVector3 margin(gContactBreakingThreshold, gContactBreakingThreshold, gContactBreakingThreshold);
+    btVector3 low, high;
+    body.getAabb(low, high);
+    if (looks_ahead_) {
+      const btVector3 way = contacts_.way(body, getGravity()), none(0, 0, 0);
+      btVector3 back = way, on = way;
+      back.setMin(none), on.setMax(none);
+      low += back, high += on;
+    }
+    return {low - margin, high + margin};
+  }
+
+  struct Bounded {
+    btBroadphaseProxy* proxy;
+    Bounds bounds;
+  };
+  /// Results of one thread.
+  struct alignas(64) List {
+    std::vector<Bounded> outside;  ///< objects that have left their boxes
+  };
 
   FirstContacts& first_contacts_;
   ContactImpulses& contact_impulses_;
@@ -127,6 +160,8 @@ class SoftWorld final : public World {
   std::vector<btPersistentManifold*> manifolds_;
   const std::vector<btRigidBody*>& moving_statics_;
   SoftStep step_;
+  soft::Team& team_;
+  std::vector<List> lists_;
   bool looks_ahead_;
 };
 

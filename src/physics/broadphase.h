@@ -1,0 +1,80 @@
+// Finds pairs of objects that are near each other, with two trees of boxes: one of what moves, one of statics. A box in
+// a tree is larger than the bounds of its object, so most objects that move slowly stay in theirs.
+//
+// Only objects that have left their boxes since the last look are looked at, by all threads. The order of pairs, and
+// pairs that are near no more, depend on the past. Nothing that is computed may depend on them.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <BulletCollision/BroadphaseCollision/btBroadphaseInterface.h>
+#include <BulletCollision/BroadphaseCollision/btDbvt.h>
+
+#include "physics/contact_pairs.h"
+#include "physics/soft/threads.h"
+
+namespace aurasim::physics {
+
+class Broadphase final : public btBroadphaseInterface {
+ public:
+  /// Both have to outlive the broadphase.
+  Broadphase(ContactPairs& pairs, soft::Team& team);
+  ~Broadphase() override;
+  Broadphase(const Broadphase&) = delete;
+  Broadphase& operator=(const Broadphase&) = delete;
+
+  /// The next object gets this unique id, by which the two objects of a pair are ordered.
+  void number_next(int id) { next_id_ = id; }
+
+  /// Sets the bounds of an object if they are inside its box; returns false with nothing done if not. Several threads
+  /// may call it for different objects.
+  static bool keep_in_box(btBroadphaseProxy& proxy, const btVector3& low, const btVector3& high);
+
+  btBroadphaseProxy* createProxy(const btVector3& low, const btVector3& high, int shape, void* object, int group,
+                                 int mask, btDispatcher* dispatcher) override;
+  void destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
+  void setAabb(btBroadphaseProxy* proxy, const btVector3& low, const btVector3& high,
+               btDispatcher* dispatcher) override;
+  void getAabb(btBroadphaseProxy* proxy, btVector3& low, btVector3& high) const override;
+  void rayTest(const btVector3& from, const btVector3& to, btBroadphaseRayCallback& callback, const btVector3& low,
+               const btVector3& high) override;
+  void aabbTest(const btVector3& low, const btVector3& high, btBroadphaseAabbCallback& callback) override;
+  /// Adds the pairs of objects that have left their boxes, and removes some of those that are no more.
+  void calculateOverlappingPairs(btDispatcher* dispatcher) override;
+  btOverlappingPairCache* getOverlappingPairCache() override { return &pairs_; }
+  const btOverlappingPairCache* getOverlappingPairCache() const override { return &pairs_; }
+  void getBroadphaseAabb(btVector3& low, btVector3& high) const override;
+  void printStats() override {}
+
+ private:
+  struct Proxy;
+  struct Near {
+    Proxy *one, *other;
+  };
+  /// Results of one thread.
+  struct alignas(64) List {
+    std::vector<const btDbvtNode*> stack;
+    std::vector<Near> found;
+  };
+
+  static Proxy& of(btBroadphaseProxy& proxy);
+  static const Proxy& of(const btBroadphaseProxy& proxy);
+  btDbvt& tree_of(const Proxy& proxy);
+  void note_moved(Proxy& proxy);
+  void look(List& list, Proxy& proxy);
+  void look_in(const btDbvt& tree, List& list, Proxy& proxy);
+  std::size_t add_found();
+  void clean(std::size_t count, btDispatcher* dispatcher);
+
+  ContactPairs& pairs_;
+  soft::Team& team_;
+  int next_id_ = 0;
+  btDbvt moving_, standing_;
+  std::vector<Proxy*> moved_;  ///< objects that have left their boxes; null: removed since
+  std::vector<List> lists_;
+  std::size_t next_to_clean_ = 0;     ///< index of a pair
+  std::size_t statics_to_place_ = 0;  ///< leaves of standing_ that may have a better place in the tree
+};
+
+}  // namespace aurasim::physics
