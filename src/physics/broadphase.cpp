@@ -11,7 +11,7 @@ namespace {
 /// A box is larger than the bounds by this on all sides, m.
 constexpr btScalar kMargin_m = btScalar(0.05);
 /// An object that moves gets a box for so many steps on, but not larger than twice its bounds.
-constexpr btScalar kStepsAhead = 3;
+constexpr btScalar kStepsAhead = 6;
 /// In each look, one pair in so many is tested for whether it is still near, but no more than so many for each object
 /// that has left its box.
 constexpr std::size_t kLooksForAll = 10, kPairsOfObject = 8;
@@ -165,10 +165,10 @@ void Broadphase::look_in(const btDbvt& tree, List& list, Proxy& proxy) {
   while (!list.stack.empty()) {
     const btDbvtNode* const node = list.stack.back();
     list.stack.pop_back();
-    if (!Intersect(node->volume, box)) continue;
     if (node->isinternal()) {
-      list.stack.push_back(node->childs[0]);
-      list.stack.push_back(node->childs[1]);
+      for (const btDbvtNode* const child : node->childs) {
+        if (Intersect(child->volume, box)) list.stack.push_back(child);
+      }
       continue;
     }
     Proxy& other = *static_cast<Proxy*>(node->data);

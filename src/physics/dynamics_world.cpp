@@ -195,6 +195,8 @@ void DynamicsWorld::cast(const btVector3& from, const btVector3& to, btCollision
   bullet_->world->rayTest(from, to, hit);
 }
 
+soft::Team& DynamicsWorld::team() { return bullet_->team; }
+
 FirstContacts& DynamicsWorld::first_contacts() { return bullet_->first_contacts; }
 
 ContactImpulses& DynamicsWorld::contact_impulses() { return bullet_->contact_impulses; }

@@ -18,6 +18,10 @@ class btTypedConstraint;
 
 namespace aurasim::physics {
 
+namespace soft {
+class Team;
+}
+
 class DynamicsWorld {
  public:
   DynamicsWorld(const core::Vec3& gravity, const Settings& settings);
@@ -57,6 +61,9 @@ class DynamicsWorld {
 
   /// Casts a ray and passes `hit` every object on the way that it does not reject.
   void cast(const btVector3& from, const btVector3& to, btCollisionWorld::RayResultCallback& hit) const;
+
+  /// The threads that step this world.
+  soft::Team& team();
 
   FirstContacts& first_contacts();
   ContactImpulses& contact_impulses();

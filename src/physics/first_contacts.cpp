@@ -45,17 +45,24 @@ FirstContact describe(const btPersistentManifold& manifold) {
 }  // namespace
 
 void FirstContacts::look(std::span<btPersistentManifold* const> manifolds, btOverlappingPairCache& pairs) {
-  ++now_;
   new_.clear();
   for_each_touching(manifolds, [this](btPersistentManifold& manifold) {
-    if (!is_moving(*manifold.getBody0()) || !is_moving(*manifold.getBody1())) return;
-    if (last_touch(manifold) != now_ - 1) {
-      manifold.m_companionIdB = static_cast<int>(now_);
-      new_.push_back(&manifold);
-    }
-    manifold.m_companionIdA = static_cast<int>(now_);
+    if (note(manifold)) new_.push_back(&manifold);
   });
-  for (const btPersistentManifold* manifold : new_) {
+  report(new_, pairs);
+}
+
+bool FirstContacts::note(btPersistentManifold& manifold) const {
+  if (!is_moving(*manifold.getBody0()) || !is_moving(*manifold.getBody1())) return false;
+  const bool is_new = last_touch(manifold) != now_;
+  if (is_new) manifold.m_companionIdB = static_cast<int>(now_ + 1);
+  manifold.m_companionIdA = static_cast<int>(now_ + 1);
+  return is_new;
+}
+
+void FirstContacts::report(std::span<btPersistentManifold* const> came, btOverlappingPairCache& pairs) {
+  ++now_;
+  for (const btPersistentManifold* manifold : came) {
     if (is_compound(*manifold->getBody0()) || is_compound(*manifold->getBody1())) {
       report_pair(*manifold, pairs);
     } else {

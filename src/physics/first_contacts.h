@@ -32,6 +32,13 @@ class FirstContacts {
   /// point.
   void look(std::span<btPersistentManifold* const> manifolds, btOverlappingPairCache& pairs);
 
+  // The same in two parts, of which the first can be called by several threads for different manifolds.
+  /// Notes that a manifold with a point is there in the substep of the next report(). Returns true if report() has to
+  /// get it, because it was not there in the substep before.
+  bool note(btPersistentManifold& manifold) const;
+  /// Reports manifolds whose note() has returned true.
+  void report(std::span<btPersistentManifold* const> came, btOverlappingPairCache& pairs);
+
   /// Adds a contact that begins after look() within the step (soft/ahead.h). It does not count as new again in the next
   /// look().
   void add(const FirstContact& contact, const btBroadphasePair& pair);

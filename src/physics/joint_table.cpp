@@ -1,6 +1,7 @@
 #include "physics/joint_table.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <tuple>
@@ -11,6 +12,7 @@
 #include "core/joint_ways.h"
 #include "physics/awaken.h"
 #include "physics/bullet_convert.h"
+#include "physics/soft/threads.h"
 
 namespace aurasim::physics {
 namespace {
@@ -234,12 +236,19 @@ void JointTable::follow() {
 }
 
 void JointTable::finish_look(DynamicsWorld& world) {
+  std::atomic<bool> some_broke = false;
+  world.team().for_each(connected_.size(), [&](std::size_t i) {
+    Entry& entry = entries_[core::value_of(connected_[i])];
+    if (!entry.constraint->isEnabled()) {
+      some_broke = true;
+    } else if (entry.axes.own) {
+      measure_again(entry, look_s_);
+    }
+  });
+  if (!some_broke) return;
   std::erase_if(connected_, [&](core::JointId id) {
     Entry& entry = entries_[core::value_of(id)];
-    if (entry.constraint->isEnabled()) {
-      if (entry.axes.own) measure_again(entry, look_s_);
-      return false;
-    }
+    if (entry.constraint->isEnabled()) return false;
     entry.broken = true;
     disconnect(entry, world);
     return true;

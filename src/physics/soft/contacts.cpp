@@ -112,6 +112,7 @@ void SoftContacts::look(btOverlappingPairCache& pairs, btCollisionDispatcher& di
   gravity_ = gravity;
   for (List& list : lists_) {
     list.touches.clear(), list.touches_of_sleepers.clear(), list.patches.clear(), list.will_meet.clear();
+    list.came.clear();
   }
   const int count = pairs.getNumOverlappingPairs();
   std::atomic<int> taken = 0;
@@ -120,21 +121,37 @@ void SoftContacts::look(btOverlappingPairCache& pairs, btCollisionDispatcher& di
     for (int first = taken.fetch_add(kAtOnce); first < count; first = taken.fetch_add(kAtOnce)) {
       look(list, pairs, first, std::min(count, first + kAtOnce), dispatcher, info);
     }
+    worker.wait();
+    gather(worker);
   });
-  touches_.clear();
   touches_of_sleepers_.clear();
   ahead_.clear();
-  for (std::uint32_t i = 0; i < lists_.size(); ++i) {
-    for (SoftTouch& touch : lists_[i].touches) touch.list = i;
-    touches_.insert(touches_.end(), lists_[i].touches.begin(), lists_[i].touches.end());
-    touches_of_sleepers_.insert(touches_of_sleepers_.end(), lists_[i].touches_of_sleepers.begin(),
-                                lists_[i].touches_of_sleepers.end());
+  came_.clear();
+  for (const List& list : lists_) {
+    touches_of_sleepers_.insert(touches_of_sleepers_.end(), list.touches_of_sleepers.begin(),
+                                list.touches_of_sleepers.end());
+    came_.insert(came_.end(), list.came.begin(), list.came.end());
   }
   for (const List& list : lists_) {
     for (const WillMeet& two : list.will_meet) {
       core::Progress::mark();
       meet(two, dispatcher, info);
     }
+  }
+}
+
+/// Gathers the touches of all threads. Each copies its own.
+void SoftContacts::gather(const soft::Worker& worker) {
+  std::size_t before = 0, all = 0;
+  for (std::size_t i = 0; i < lists_.size(); ++i) {
+    if (static_cast<int>(i) < worker.number) before += lists_[i].touches.size();
+    all += lists_[i].touches.size();
+  }
+  if (worker.is_first()) touches_.resize(all);
+  worker.wait();
+  for (const SoftTouch& touch : lists_[static_cast<std::size_t>(worker.number)].touches) {
+    touches_[before] = touch;
+    touches_[before++].list = static_cast<std::uint32_t>(worker.number);
   }
 }
 
@@ -196,6 +213,9 @@ void SoftContacts::look(List& list, btBroadphasePair& pair, btCollisionDispatche
   }
   const std::size_t touched = list.touches.size();
   collect(list, pair);
+  for (std::size_t i = touched; i < list.touches.size(); ++i) {
+    if (first_contacts_.note(*list.touches[i].manifold)) list.came.push_back(list.touches[i].manifold);
+  }
   if (looks_ahead_ && list.touches.size() == touched) look_ahead(list, pair);
 }
 

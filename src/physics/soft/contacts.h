@@ -57,6 +57,8 @@ class SoftContacts {
   std::span<SoftPatch> patches_of(const SoftTouch& touch) {
     return std::span(lists_[touch.list].patches).subspan(touch.first_patch, touch.patches);
   }
+  /// Manifolds that FirstContacts has to report.
+  std::span<btPersistentManifold* const> came() const { return came_; }
   /// Contacts ahead of time of two bodies, neither of them static.
   std::span<const SoftAhead> ahead() const { return ahead_; }
   std::span<const SoftPatch> patches_of(const SoftAhead& ahead) const {
@@ -72,6 +74,7 @@ class SoftContacts {
   struct alignas(64) List {
     btManifoldArray manifolds;
     std::vector<SoftTouch> touches, touches_of_sleepers;
+    std::vector<btPersistentManifold*> came;  ///< new ones of two bodies that move
     std::vector<SoftPatch> patches;
     std::vector<WillMeet> will_meet;
   };
@@ -81,6 +84,7 @@ class SoftContacts {
   void look(List& list, btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info);
   void collect(List& list, const btBroadphasePair& pair);
   void collect_of_sleepers(List& list, const btBroadphasePair& pair);
+  void gather(const soft::Worker& worker);
   void know_touches(List& list, const btBroadphasePair& pair) const;
   void look_ahead(List& list, btBroadphasePair& pair);
   void meet(const WillMeet& two, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info);
@@ -98,6 +102,7 @@ class SoftContacts {
   std::vector<List> lists_;
   std::vector<SoftTouch> touches_, touches_of_sleepers_;
   std::vector<SoftAhead> ahead_;
+  std::vector<btPersistentManifold*> came_;
 };
 
 }  // namespace aurasim::physics

@@ -138,7 +138,7 @@ void SoftIslands::wake() {
 }
 
 /// A counting sort, because touches come in no order and each body has several. Parts matter for compounds only.
-void SoftIslands::sort(std::span<const SoftTouch> touches) {
+void SoftIslands::sort(std::span<const SoftTouch> touches, soft::Team& team) {
   const auto first_of = [](const SoftTouch& touch) { return std::min(touch.a, touch.b); };
   const auto last_of = [](const SoftTouch& touch) { return static_cast<std::size_t>(std::max(touch.a, touch.b)); };
   const auto counts = [&](const SoftTouch& touch) {
@@ -161,13 +161,11 @@ void SoftIslands::sort(std::span<const SoftTouch> touches) {
     if (first_of(x) != first_of(y)) return first_of(x) < first_of(y);
     return std::tie(x.a, x.parts) < std::tie(y.a, y.parts);
   };
-  std::size_t first = 0;
   // each entry of ends_ is now the end of its body's touches
-  for (std::size_t body = 0; body + 1 < ends_.size(); ++body) {
-    std::sort(touches_.begin() + static_cast<std::ptrdiff_t>(first),
+  team.for_each(ends_.size() - 1, [&](std::size_t body) {
+    std::sort(touches_.begin() + static_cast<std::ptrdiff_t>(body > 0 ? ends_[body - 1] : 0),
               touches_.begin() + static_cast<std::ptrdiff_t>(ends_[body]), before);
-    first = ends_[body];
-  }
+  });
 }
 
 }  // namespace aurasim::physics

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "physics/soft/threads.h"
 #include "physics/soft/touch.h"
 
 class btRigidBody;
@@ -42,7 +43,7 @@ class SoftIslands {
   bool is_woken(std::uint32_t slot) const { return has(slot, kSleeps) && has(slot, kMoves); }
 
   /// Sorts the touches of bodies that are awake now.
-  void sort(std::span<const SoftTouch> touches);
+  void sort(std::span<const SoftTouch> touches, soft::Team& team);
 
   /// After call(): bodies that did not sleep. After find(): bodies that move in the step.
   std::span<btRigidBody* const> awake() const { return awake_; }

@@ -47,10 +47,10 @@ class SoftWorld final : public World {
     core::Progress::mark();
     contacts_.look(*getPairCache(), static_cast<btCollisionDispatcher&>(*m_dispatcher1), getDispatchInfo(),
                    getGravity());
-    first_contacts_.look(manifolds_of(contacts_.touches()), *getPairCache());
+    first_contacts_.report(contacts_.came(), *getPairCache());
     islands_.find(contacts_.touches(), contacts_.touches_of_sleepers(), span_of(m_constraints));
     if (islands_.has_woken_any()) contacts_.add_woken(*getPairCache());
-    islands_.sort(contacts_.touches());
+    islands_.sort(contacts_.touches(), team_);
     core::Progress::mark();
     step_.solve(islands_.awake(), moving_statics_, islands_.touches(), contacts_, islands_.joints(), getGravity(),
                 contact_impulses_);
@@ -82,31 +82,27 @@ class SoftWorld final : public World {
     }
   }
 
-  std::span<btPersistentManifold* const> manifolds_of(std::span<const SoftTouch> touches) {
-    manifolds_.clear();
-    for (const SoftTouch& touch : touches) {
-      if (touch.manifold != nullptr) manifolds_.push_back(touch.manifold);
-    }
-    return manifolds_;
-  }
-
   void damp(btScalar step_s) {
-    for (btRigidBody* body : islands_.awake()) {
-      if (body->getLinearDamping() > 0 || body->getAngularDamping() > 0) body->applyDamping(step_s);
-    }
+    const std::span<btRigidBody* const> awake = islands_.awake();
+    team_.for_each(awake.size(), [&](std::size_t i) {
+      btRigidBody& body = *awake[i];
+      if (body.getLinearDamping() > 0 || body.getAngularDamping() > 0) body.applyDamping(step_s);
+    });
   }
 
   /// Bodies that have been slow for long want to sleep, by Bullet's rules, unless they never sleep.
   void rest(btScalar step_s) {
-    for (btRigidBody* body : islands_.awake()) {
-      body->updateDeactivation(step_s);
-      if (body->getActivationState() == DISABLE_DEACTIVATION) continue;
-      if (!body->wantsSleeping()) {
-        body->setActivationState(ACTIVE_TAG);
-      } else if (body->getActivationState() == ACTIVE_TAG) {
-        body->setActivationState(WANTS_DEACTIVATION);
+    const std::span<btRigidBody* const> awake = islands_.awake();
+    team_.for_each(awake.size(), [&](std::size_t i) {
+      btRigidBody& body = *awake[i];
+      body.updateDeactivation(step_s);
+      if (body.getActivationState() == DISABLE_DEACTIVATION) return;
+      if (!body.wantsSleeping()) {
+        body.setActivationState(ACTIVE_TAG);
+      } else if (body.getActivationState() == ACTIVE_TAG) {
+        body.setActivationState(WANTS_DEACTIVATION);
       }
-    }
+    });
   }
 
   /// Updates the bounds of objects that may have moved since the last call. Most of them stay in their boxes.
@@ -157,7 +153,6 @@ class SoftWorld final : public World {
   ContactImpulses& contact_impulses_;
   SoftIslands islands_;
   SoftContacts contacts_;
-  std::vector<btPersistentManifold*> manifolds_;
   const std::vector<btRigidBody*>& moving_statics_;
   SoftStep step_;
   soft::Team& team_;
