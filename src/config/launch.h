@@ -54,7 +54,7 @@ struct Physics {
   double contact_erp = 0.2;        ///< share of an overlap undone in each substep, by a speed that remains
   std::optional<bool> continuous;  ///< fast bodies stop at obstacles; nothing: yes where contacts are found once a step
   std::optional<double> block_m;   ///< side of the blocks; nothing: by the bodies of the scene
-  std::optional<int> threads = 1;  ///< threads of a node's physics; nothing: as many as the host has for it
+  std::optional<int> threads;      ///< threads of a node's physics; nothing: as many as the host has for it
 };
 
 /// Impairment of the network. Values that are not given come from the DDS profiles.

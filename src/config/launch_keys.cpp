@@ -116,8 +116,9 @@ const KeysOf<Physics>& physics_keys() {
                    "those between columns. auto: 16, or as much as the sizes of the scene's bodies need")
               .usual("auto"),
           optional("threads", &Physics::threads, integer(1, 64).or_word("auto"),
-                   "of each node's soft_step; their number changes no bit. auto: the host's cores, shared among the "
-                   "nodes that launch starts there"),
+                   "of each node's soft_step, at most; small worlds use fewer, and their number changes no bit. auto: "
+                   "the cores that the process may use, shared among the nodes of the run")
+              .usual("auto"),
       });
   return keys;
 }

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <stdexcept>
-#include <thread>
 
 #include "core/horizon.h"
 #include "core/make_aura.h"
+#include "physics/soft/threads.h"
 #include "physics/solver_names.h"
 #include "records/setpoint_record.h"
 
@@ -54,7 +54,7 @@ double listening_distance_m(const config::Launch& launch) {
 }
 
 int threads_of(const config::Launch& launch, std::size_t nodes) {
-  const std::size_t share = std::max(1U, std::thread::hardware_concurrency()) / nodes;
+  const std::size_t share = static_cast<std::size_t>(physics::soft::usable_cores()) / nodes;
   return launch.physics.threads.value_or(static_cast<int>(std::clamp<std::size_t>(share, 1, 64)));
 }
 
@@ -74,7 +74,7 @@ node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, 
   setup.physics.contact_erp = launch.physics.contact_erp;
   setup.physics.continuous = launch.physics.is_continuous();
   setup.physics.block_m = launch.block_m();
-  setup.physics.threads = threads_of(launch, 1);
+  setup.physics.threads = threads_of(launch, launch.regions.size());
   setup.physics.foresight_s = launch.step_s() * core::horizon::announcing(launch.lookahead(), core::horizon::kMostHops);
   setup.control = launch.control_rules();
   if (!launch.control.replay.empty()) setup.recorded = records::read_setpoints(launch.control.replay);

@@ -18,7 +18,8 @@ dds::Settings dds_settings(const config::Launch& launch, std::optional<core::Reg
 core::AuraRules aura_rules(const config::Launch& launch);
 /// Largest distance of regions that exchange batches, metres: as configured, and never less than the reach of an aura.
 double listening_distance_m(const config::Launch& launch);
-/// Number of threads of each node when `nodes` run on this host: as in the file, or else its share of the cores.
+/// Number of threads of each node when `nodes` run on this host: as in the file, or else its share of the cores that
+/// this process may use, but at least 1.
 int threads_of(const config::Launch& launch, std::size_t nodes);
 node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, core::Generation generation);
 messages::WorldMap world_map(const config::Launch& launch);

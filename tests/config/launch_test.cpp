@@ -90,7 +90,8 @@ TEST(LaunchFile, WhatIsAutoFollowsFromTheSolver) {
   EXPECT_TRUE(workspace.launch(start + "physics: {continuous: auto}\n").physics.is_continuous());
   EXPECT_FALSE(workspace.launch(start + "physics: {continuous: false}\n").physics.is_continuous());
   EXPECT_FALSE(workspace.launch(start + "physics: {solver: sequential_impulse}\n").physics.is_continuous());
-  EXPECT_EQ(workspace.launch(start).physics.threads, 1);
+  EXPECT_EQ(workspace.launch(start).physics.threads, std::nullopt);
+  EXPECT_EQ(workspace.launch(start + "physics: {threads: 3}\n").physics.threads, 3);
   EXPECT_EQ(workspace.launch(start + "physics: {threads: auto}\n").physics.threads, std::nullopt);
   EXPECT_EQ(workspace.launch(start).block_m(), 16);
   EXPECT_EQ(workspace.launch(start + "physics: {block: auto}\n").block_m(), 16);

@@ -1,10 +1,13 @@
 // What a launch file means to nodes, transports and worlds.
 #include "setup/launch_setup.h"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "config/workspace.h"
+#include "physics/soft/threads.h"
 
 namespace aurasim::setup {
 namespace {
@@ -34,6 +37,19 @@ TEST(DdsSettings, OfTwoNodesLoseOtherDatagramsOfTheSameSeed) {
   const auto stream = [&](std::optional<RegionId> region) { return dds_settings(launch, region).impairment_stream; };
   EXPECT_NE(stream(RegionId{0}), stream(RegionId{1}));
   EXPECT_NE(stream(RegionId{0}), stream({})) << "a process that only watches";
+}
+
+TEST(ThreadsOfANode, AreItsShareOfTheCores) {
+  const int cores = physics::soft::usable_cores();
+  EXPECT_EQ(threads_of(launch_of(""), 1), std::min(64, cores));
+  EXPECT_EQ(threads_of(launch_of(""), 2), std::clamp(cores / 2, 1, 64));
+  EXPECT_EQ(threads_of(launch_of(""), static_cast<std::size_t>(cores) + 1), 1);
+  EXPECT_EQ(threads_of(launch_of("physics: {threads: 5}\n"), 1000), 5);
+}
+
+TEST(ThreadsOfANode, AreNotPartOfTheAgreement) {
+  EXPECT_EQ(launch_of("physics: {threads: 1}\n").agreement(), launch_of("physics: {threads: 2}\n").agreement());
+  EXPECT_EQ(launch_of("physics: {threads: 1}\n").agreement(), launch_of("").agreement());
 }
 
 TEST(AuraRules, AreThoseOfTheFile) {

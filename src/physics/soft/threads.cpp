@@ -17,12 +17,6 @@ constexpr std::size_t kBodiesOfThread = 32;
 /// Linux lets a thread that yields often wait for a slice of every other one.
 constexpr int kSpins = 4000;
 
-/// Number of cores that this process may use.
-int cores() {
-  cpu_set_t set;
-  return sched_getaffinity(0, sizeof(set), &set) == 0 ? CPU_COUNT(&set) : 1;
-}
-
 /// Sleeps until wake_all() for the same word, unless it is not `from` any more. May return earlier.
 void sleep_while(const std::atomic<std::uint32_t>& word, std::uint32_t from) {
   syscall(SYS_futex, &word, FUTEX_WAIT_PRIVATE, from, nullptr, nullptr, 0);
@@ -31,18 +25,17 @@ void wake_all(const std::atomic<std::uint32_t>& word) {
   syscall(SYS_futex, &word, FUTEX_WAKE_PRIVATE, 1 << 30, nullptr, nullptr, 0);
 }
 
-void pause() {
-#ifdef __x86_64__
-  __builtin_ia32_pause();
-#endif
-}
-
 }  // namespace
+
+int usable_cores() {
+  cpu_set_t set;
+  return sched_getaffinity(0, sizeof(set), &set) == 0 ? std::max(1, CPU_COUNT(&set)) : 1;
+}
 
 Team::Team(int threads)
     : size_(std::clamp(threads, 1, static_cast<int>(kMostThreads) - 1)),
       employed_(size_),
-      spins_(threads <= cores() ? kSpins : 0) {}
+      spins_(threads <= usable_cores() ? kSpins : 0) {}
 
 Team::~Team() {
   change(start_, 0);

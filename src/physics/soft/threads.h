@@ -15,6 +15,16 @@ namespace aurasim::physics::soft {
 
 class Team;
 
+/// Number of cores that this process may use, at least 1.
+int usable_cores();
+
+/// Tells the core that the thread only waits.
+inline void pause() {
+#ifdef __x86_64__
+  __builtin_ia32_pause();
+#endif
+}
+
 /// One of several threads that share the same work.
 struct Worker {
   int number = 0;
