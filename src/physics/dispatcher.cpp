@@ -12,6 +12,7 @@
 
 #include "physics/corrected_result.h"
 #include "physics/inner_edges.h"
+#include "physics/soft/threads.h"
 
 namespace aurasim::physics {
 namespace {
@@ -100,8 +101,19 @@ bool Dispatcher::find_contacts(btBroadphasePair& pair, const btDispatcherInfo& i
   return false;
 }
 
+/// Others hold the pools for much less time than it takes to sleep and to be woken.
+std::unique_lock<std::mutex> Dispatcher::hold_pools() {
+  constexpr int kTries = 200;
+  for (int i = 0; i < kTries; ++i) {
+    std::unique_lock<std::mutex> lock(pools_, std::try_to_lock);
+    if (lock.owns_lock()) return lock;
+    soft::pause();
+  }
+  return std::unique_lock<std::mutex>(pools_);
+}
+
 btPersistentManifold* Dispatcher::getNewManifold(const btCollisionObject* body0, const btCollisionObject* body1) {
-  const std::scoped_lock lock(pools_);
+  const std::unique_lock<std::mutex> lock = hold_pools();
   btPersistentManifold* const manifold = btCollisionDispatcher::getNewManifold(body0, body1);
   const btScalar limit = static_cast<btScalar>(kContactMargin);
   manifold->setContactBreakingThreshold(std::min(manifold->getContactBreakingThreshold(), limit));
@@ -109,17 +121,17 @@ btPersistentManifold* Dispatcher::getNewManifold(const btCollisionObject* body0,
 }
 
 void Dispatcher::releaseManifold(btPersistentManifold* manifold) {
-  const std::scoped_lock lock(pools_);
+  const std::unique_lock<std::mutex> lock = hold_pools();
   btCollisionDispatcher::releaseManifold(manifold);
 }
 
 void* Dispatcher::allocateCollisionAlgorithm(int bytes) {
-  const std::scoped_lock lock(pools_);
+  const std::unique_lock<std::mutex> lock = hold_pools();
   return btCollisionDispatcher::allocateCollisionAlgorithm(bytes);
 }
 
 void Dispatcher::freeCollisionAlgorithm(void* memory) {
-  const std::scoped_lock lock(pools_);
+  const std::unique_lock<std::mutex> lock = hold_pools();
   btCollisionDispatcher::freeCollisionAlgorithm(memory);
 }
 

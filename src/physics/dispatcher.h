@@ -38,6 +38,8 @@ class Dispatcher : public btCollisionDispatcher {
   void make_all_manifolds(bool wanted) { hull_contacts_.make_all_manifolds(wanted); }
 
  private:
+  std::unique_lock<std::mutex> hold_pools();
+
   const InnerEdges& inner_edges_;
   HullContactsMaker hull_contacts_;
   std::mutex pools_;

@@ -147,9 +147,6 @@ void SoftStep::Impl::take_in(std::span<btRigidBody* const> awake, std::span<btRi
     (is_held(body->getUserIndex()) ? held : flying).push_back(body);
   }
   if (team.employed() > 1) order_by_block();
-  for (std::size_t i = 1; i < held.size(); ++i) {
-    mover_at[static_cast<std::size_t>(held[i]->getUserIndex())] = static_cast<std::int32_t>(i);
-  }
   make_room(moving_statics.size());
   take_in_statics(moving_statics);
   team.side_by_side([this](const soft::Worker& worker) {
@@ -273,6 +270,7 @@ void SoftStep::Impl::take_in(std::size_t i) {
   }
   prefetch_after(i);
   const btRigidBody& body = *held[i];
+  mover_at[static_cast<std::size_t>(body.getUserIndex())] = static_cast<std::int32_t>(i);
   soft::from_bullet(body.getLinearVelocity(), mover.v);
   soft::from_bullet(body.getAngularVelocity(), mover.w);
   const btMatrix3x3& inverse = body.getInvInertiaTensorWorld();
