@@ -1,6 +1,4 @@
 // How contacts are shared out among threads: soft/layout.h.
-#include "physics/soft/layout.h"
-
 #include <map>
 #include <random>
 #include <vector>
@@ -8,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "physics/soft/lanes.h"
+#include "physics/soft/layout.h"
 
 namespace aurasim::physics::testing {
 namespace {
@@ -28,7 +27,9 @@ std::vector<Contact> contacts(std::size_t cells, std::size_t count) {
   std::vector<Contact> all;
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t cell = random() % cells;
-    const auto body_of = [&](std::size_t of) { return static_cast<std::int32_t>(1 + of * in_cell + random() % in_cell); };
+    const auto body_of = [&](std::size_t of) {
+      return static_cast<std::int32_t>(1 + of * in_cell + random() % in_cell);
+    };
     const std::int32_t a = body_of(cell), b = i % 5 == 0 ? 0 : body_of(i % 50 == 1 ? random() % cells : cell);
     if (a == b) continue;
     const bool inside = i % 50 != 1;
