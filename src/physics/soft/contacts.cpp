@@ -95,6 +95,15 @@ btManifoldArray& manifolds_of(const btBroadphasePair& pair, btManifoldArray& spa
   return space;
 }
 
+/// Has the pair a contact point?
+bool touch(const btBroadphasePair& pair, btManifoldArray& space) {
+  const btManifoldArray& manifolds = manifolds_of(pair, space);
+  for (int i = 0; i < manifolds.size(); ++i) {
+    if (manifolds[i]->getNumContacts() > 0) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 btVector3 SoftContacts::way(const btCollisionObject& object, const btVector3& gravity) const {
@@ -112,7 +121,7 @@ void SoftContacts::look(btOverlappingPairCache& pairs, btCollisionDispatcher& di
   gravity_ = gravity;
   for (List& list : lists_) {
     list.touches.clear(), list.touches_of_sleepers.clear(), list.patches.clear(), list.will_meet.clear();
-    list.came.clear();
+    list.came.clear(), list.parted.clear();
   }
   const int count = pairs.getNumOverlappingPairs();
   std::atomic<int> taken = 0;
@@ -125,12 +134,14 @@ void SoftContacts::look(btOverlappingPairCache& pairs, btCollisionDispatcher& di
     gather(worker);
   });
   touches_of_sleepers_.clear();
+  parted_.clear();
   ahead_.clear();
   came_.clear();
   for (const List& list : lists_) {
     touches_of_sleepers_.insert(touches_of_sleepers_.end(), list.touches_of_sleepers.begin(),
                                 list.touches_of_sleepers.end());
     came_.insert(came_.end(), list.came.begin(), list.came.end());
+    parted_.insert(parted_.end(), list.parted.begin(), list.parted.end());
   }
   for (const List& list : lists_) {
     for (const WillMeet& two : list.will_meet) {
@@ -178,11 +189,14 @@ void SoftContacts::look(List& list, btOverlappingPairCache& pairs, int first, in
       continue;
     }
     if (islands_.slept(slots.a) && islands_.slept(slots.b)) know_touches(list, all[i]);
+    const std::uint32_t sleeper = islands_.sleeps(slots.a) ? slots.a : islands_.sleeps(slots.b) ? slots.b : 0;
+    const bool touched = sleeper != 0 && touch(all[i], list.manifolds);
     if (bounds_overlap(all[i])) {
       look(list, all[i], dispatcher, info);
     } else {
       pairs.cleanOverlappingPair(all[i], &dispatcher);
     }
+    if (touched && !touch(all[i], list.manifolds)) list.parted.push_back(sleeper);
   }
 }
 

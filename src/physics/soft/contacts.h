@@ -54,6 +54,8 @@ class SoftContacts {
   std::span<const SoftTouch> touches() const { return touches_; }
   /// Touches of two sleepers, if their islands are not known. They have no patches.
   std::span<const SoftTouch> touches_of_sleepers() const { return touches_of_sleepers_; }
+  /// Slots of sleepers that touched a body in the last step that is awake, and do not touch it any more.
+  std::span<const std::uint32_t> parted() const { return parted_; }
   std::span<SoftPatch> patches_of(const SoftTouch& touch) {
     return std::span(lists_[touch.list].patches).subspan(touch.first_patch, touch.patches);
   }
@@ -75,6 +77,7 @@ class SoftContacts {
     btManifoldArray manifolds;
     std::vector<SoftTouch> touches, touches_of_sleepers;
     std::vector<btPersistentManifold*> came;  ///< new ones of two bodies that move
+    std::vector<std::uint32_t> parted;
     std::vector<SoftPatch> patches;
     std::vector<WillMeet> will_meet;
   };
@@ -101,6 +104,7 @@ class SoftContacts {
   const FirstContacts& first_contacts_;
   std::vector<List> lists_;
   std::vector<SoftTouch> touches_, touches_of_sleepers_;
+  std::vector<std::uint32_t> parted_;
   std::vector<SoftAhead> ahead_;
   std::vector<btPersistentManifold*> came_;
 };

@@ -1,5 +1,5 @@
-// The islands of a soft step: finds the bodies that are awake, and sorts their contacts and joints in an order that
-// follows from each island alone.
+// Sleep in the soft step (docs/design.md, "Sleep"): finds the bodies that are awake, and sorts their contacts and
+// joints in an order that follows from the bodies alone.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,9 @@
 #include <vector>
 
 #include "physics/soft/threads.h"
+#include <LinearMath/btScalar.h>
+
+#include "core/block.h"
 #include "physics/soft/touch.h"
 
 class btRigidBody;
@@ -14,9 +17,13 @@ class btTypedConstraint;
 
 namespace aurasim::physics {
 
-/// Bodies that touch or are jointed fall asleep and wake together. The touches of sleepers stay until one of them
-/// wakes, arrives or leaves, so a step only tests whether each still sleeps. A body's user index grows with its id; a
-/// static's is negative. Nothing is allocated once warm.
+/// A *part* is a set of bodies of one block that contacts and joints connect. It falls asleep and wakes as a whole.
+/// What touches it across a seam of blocks only counts by its own state of before, so no more than the touching bodies
+/// has to be known of the other block. Bullet's activation states mean: WANTS_DEACTIVATION: the body is still, and its
+/// part was calm in the step that led to this state. A sleeper with deactivation time 0 wakes in the next step.
+///
+/// The touches of sleepers stay until one of them wakes, arrives or leaves, so a step only tests whether each still
+/// sleeps. A body's user index grows with its id; a static's is negative. Nothing is allocated once warm.
 class SoftIslands {
  public:
   /// Gives a body that enters the world a slot (its user index 3), which stays the same until it leaves. Slot 0:
@@ -35,15 +42,19 @@ class SoftIslands {
   /// Are the touches of sleepers known? If not, find() has to get them as `of_sleepers`.
   bool knows_sleepers() const { return knows_sleepers_; }
 
-  /// Puts islands to sleep or wakes them.
+  /// Puts parts to sleep or wakes them. `parted`: slots of sleepers that have lost the touch of a body that is awake.
   void find(std::span<const SoftTouch> touches, std::span<const SoftTouch> of_sleepers,
-            std::span<btTypedConstraint* const> joints);
+            std::span<const std::uint32_t> parted, std::span<btTypedConstraint* const> joints);
   bool has_woken_any() const { return has_woken_any_; }
   /// Did the body sleep at call(), and was it woken by find()?
   bool is_woken(std::uint32_t slot) const { return has(slot, kSleeps) && has(slot, kMoves); }
 
   /// Sorts the touches of bodies that are awake now.
   void sort(std::span<const SoftTouch> touches, soft::Team& team);
+
+  /// Gives the bodies that have moved in the step their activation states, after their velocities are known. Sleepers
+  /// that one of them has touched across a seam will wake in the next step, unless it is quiet.
+  void rest(btScalar step_s);
 
   /// After call(): bodies that did not sleep. After find(): bodies that move in the step.
   std::span<btRigidBody* const> awake() const { return awake_; }
@@ -57,23 +68,44 @@ class SoftIslands {
     kSleeps = 1,
     kSlept = 2,
     kMoves = 4,  ///< it moves in the step
-    kKept = 8,   ///< it sleeps, and the touches of its island are known
+    kKept = 8,   ///< it sleeps, and the touches of its part are known
+  };
+  /// Of a part.
+  enum Part : std::uint8_t {
+    kUp = 1,       ///< a body of it does not want to sleep, or a sleeper of it is called
+    kStirs = 2,    ///< a body of it is not calm
+    kTouched = 4,  ///< a body of a part that stirs touches it across a seam
+  };
+
+  /// Slots of two bodies of two blocks that touch.
+  struct Seam {
+    std::uint32_t a, b;
   };
 
   /// Call when the touches of sleepers may have changed.
   void forget_sleepers() { knows_sleepers_ = false; }
   bool has(std::uint32_t slot, State state) const { return (states_[slot] & state) != 0; }
-  std::uint32_t island_of(std::uint32_t slot);
-  void unite(std::uint32_t a, std::uint32_t b);
+  void note(btRigidBody& body);
+  std::uint32_t part_of(std::uint32_t slot);
+  void mark(std::uint32_t slot, Part what) { parts_[part_of(slot)] |= what; }
+  bool is(std::uint32_t slot, int what) { return (parts_[part_of(slot)] & what) != 0; }
+  void unite(std::uint32_t a, std::uint32_t b, std::vector<Seam>& seams);
+  void mark_parts(std::span<const std::uint32_t> parted);
   void put_to_sleep();
   void wake();
+  void call_neighbours();
 
   std::vector<std::uint8_t> states_{kSleeps | kSlept | kKept};  ///< by slot, as the following vectors
   std::vector<std::uint32_t> parents_{0};
-  std::vector<std::uint8_t> is_active_{0};  ///< by first slot of an island: a body of it does not want to sleep
+  std::vector<std::uint8_t> parts_{0};  ///< flags Part, by the first slot of a part
+  std::vector<core::Block> blocks_{core::Block{0, 0}};
+  std::vector<btRigidBody*> bodies_{nullptr};
   std::vector<std::uint32_t> free_;
+  std::vector<Seam> seams_;              ///< with a body that was awake at call()
+  std::vector<Seam> seams_of_sleepers_;  ///< with two sleepers, if their touches are known
+  std::vector<std::uint32_t> called_;    ///< sleepers that are to wake
   bool knows_sleepers_ = true;
-  bool reaches_sleepers_ = false;  ///< an awake body touches a sleeper
+  bool wakes_any_ = false;
   bool has_woken_any_ = false;
   std::vector<btRigidBody*> awake_;
   std::vector<btRigidBody*> asleep_;  ///< bodies that slept at call()

@@ -48,14 +48,14 @@ class SoftWorld final : public World {
     contacts_.look(*getPairCache(), static_cast<btCollisionDispatcher&>(*m_dispatcher1), getDispatchInfo(),
                    getGravity());
     first_contacts_.report(contacts_.came(), *getPairCache());
-    islands_.find(contacts_.touches(), contacts_.touches_of_sleepers(), span_of(m_constraints));
+    islands_.find(contacts_.touches(), contacts_.touches_of_sleepers(), contacts_.parted(), span_of(m_constraints));
     if (islands_.has_woken_any()) contacts_.add_woken(*getPairCache());
     islands_.sort(contacts_.touches(), team_);
     core::Progress::mark();
     step_.solve(islands_.awake(), moving_statics_, islands_.touches(), contacts_, islands_.joints(), getGravity(),
                 contact_impulses_);
     report_met();
-    rest(step_s);
+    islands_.rest(step_s);
     return 1;
   }
 
@@ -87,21 +87,6 @@ class SoftWorld final : public World {
     team_.for_each(awake.size(), [&](std::size_t i) {
       btRigidBody& body = *awake[i];
       if (body.getLinearDamping() > 0 || body.getAngularDamping() > 0) body.applyDamping(step_s);
-    });
-  }
-
-  /// Bodies that have been slow for long want to sleep, by Bullet's rules, unless they never sleep.
-  void rest(btScalar step_s) {
-    const std::span<btRigidBody* const> awake = islands_.awake();
-    team_.for_each(awake.size(), [&](std::size_t i) {
-      btRigidBody& body = *awake[i];
-      body.updateDeactivation(step_s);
-      if (body.getActivationState() == DISABLE_DEACTIVATION) return;
-      if (!body.wantsSleeping()) {
-        body.setActivationState(ACTIVE_TAG);
-      } else if (body.getActivationState() == ACTIVE_TAG) {
-        body.setActivationState(WANTS_DEACTIVATION);
-      }
     });
   }
 
