@@ -1,6 +1,9 @@
 // A rigid body that is not static. It knows its block and its size.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
@@ -13,6 +16,7 @@ struct BodyPlace {
   core::Block block{0, 0};
   double radius_m = 0;    ///< of a ball around the centre of mass that holds the shape
   bool is_bound = false;  ///< its block is that of another body, which is the first of its mechanism
+  std::vector<std::uint32_t>* changes = nullptr;  ///< of SoftIslands, while the body is in its world
 };
 
 class MovingBody final : public btRigidBody {
@@ -34,5 +38,12 @@ class MovingBody final : public btRigidBody {
 /// Precondition: `body` is a MovingBody.
 inline BodyPlace& place_of(btRigidBody& body) { return *static_cast<BodyPlace*>(body.getUserPointer()); }
 inline const BodyPlace& place_of(const btRigidBody& body) { return *static_cast<BodyPlace*>(body.getUserPointer()); }
+
+/// Call after the activation state or the block of a body has been changed outside of a step.
+inline void note_change(const btRigidBody& body) {
+  const auto* const place = static_cast<const BodyPlace*>(body.getUserPointer());
+  if (place == nullptr || place->changes == nullptr) return;
+  place->changes->push_back(static_cast<std::uint32_t>(body.getUserIndex3()));
+}
 
 }  // namespace aurasim::physics

@@ -22,7 +22,11 @@ void Simulation::settle_blocks() {
   }
   if (!any_left && !mechanisms_changed) return;
   for (const core::BoundBody& bound : joints_.mechanisms()) {
-    place_of(*table_.find(bound.body)->rigid).block = place_of(*table_.find(bound.first)->rigid).block;
+    btRigidBody& rigid = *table_.find(bound.body)->rigid;
+    const core::Block& of_first = place_of(*table_.find(bound.first)->rigid).block;
+    if (place_of(rigid).block == of_first) continue;
+    place_of(rigid).block = of_first;
+    note_change(rigid);
   }
   records_are_fresh_ = false;
 }

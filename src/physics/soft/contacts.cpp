@@ -123,7 +123,7 @@ void SoftContacts::look(btOverlappingPairCache& pairs, btCollisionDispatcher& di
     list.touches.clear(), list.touches_of_sleepers.clear(), list.patches.clear(), list.will_meet.clear();
     list.came.clear(), list.parted.clear();
   }
-  const int count = pairs.getNumOverlappingPairs();
+  const int count = islands_.are_at_rest() ? 0 : pairs.getNumOverlappingPairs();
   std::atomic<int> taken = 0;
   team_.side_by_side([&](const soft::Worker& worker) {
     List& list = lists_[static_cast<std::size_t>(worker.number)];

@@ -1,8 +1,10 @@
 #include "physics/soft/islands.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
@@ -24,6 +26,9 @@ bool is_still(const btRigidBody& body) {
          body.getAngularVelocity().length2() < kStill_rad_s * kStill_rad_s;
 }
 
+/// Is it a sleeper that wakes in the next step?
+bool is_called(const btRigidBody& body) { return is_asleep(body) && body.getDeactivationTime() == 0; }
+
 /// Has it been slow for as long as Bullet asks?
 bool wants_to_sleep(const btRigidBody& body) {
   return body.getActivationState() != DISABLE_DEACTIVATION && body.getDeactivationTime() > gDeactivationTime;
@@ -33,6 +38,15 @@ bool wants_to_sleep(const btRigidBody& body) {
 /// goes no farther than motion.
 bool is_calm(const btRigidBody& body) {
   return body.getActivationState() == WANTS_DEACTIVATION || (wants_to_sleep(body) && is_still(body));
+}
+
+std::size_t last_of(const SoftTouch& touch) { return static_cast<std::size_t>(std::max(touch.a, touch.b)); }
+
+/// The order of contacts. Parts matter for compounds only.
+bool comes_before(const SoftTouch& x, const SoftTouch& y) {
+  const std::size_t last_x = last_of(x), last_y = last_of(y);
+  if (last_x != last_y) return last_x < last_y;
+  return std::tuple(std::min(x.a, x.b), x.a, x.parts) < std::tuple(std::min(y.a, y.b), y.a, y.parts);
 }
 
 void stop(btRigidBody& body) {
@@ -46,50 +60,86 @@ void SoftIslands::insert(btRigidBody& body) {
   if (body.isStaticObject()) return body.setUserIndex3(0);
   if (free_.empty()) {
     free_.push_back(static_cast<std::uint32_t>(states_.size()));
-    states_.push_back(0), parents_.push_back(0), parts_.push_back(0);
-    blocks_.emplace_back(), bodies_.push_back(nullptr);
+    states_.push_back(0), parents_.push_back(0), parts_.push_back(0), entries_.emplace_back();
   }
-  bodies_[free_.back()] = &body;
-  body.setUserIndex3(static_cast<int>(free_.back()));
+  const std::uint32_t slot = free_.back();
   free_.pop_back();
+  body.setUserIndex3(static_cast<int>(slot));
+  entries_[slot].body = &body;
+  place_of(body).changes = &changes_;
+  changes_.push_back(slot);
 }
 
-void SoftIslands::remove(const btRigidBody& body) {
+void SoftIslands::remove(btRigidBody& body) {
   const std::uint32_t slot = slot_of(body);
   if (slot == 0) return;
   if (has(slot, kKept)) forget_sleepers();
   states_[slot] = 0;
-  bodies_[slot] = nullptr;
+  unlist(slot);
+  entries_[slot].body = nullptr;
+  place_of(body).changes = nullptr;
   free_.push_back(slot);
 }
 
 void SoftIslands::forget_past() {
   std::fill(states_.begin() + 1, states_.end(), std::uint8_t{0});
   forget_sleepers();
+  called_.clear();
+  changes_.clear();
+  for (std::uint32_t slot = 1; slot < entries_.size(); ++slot) changes_.push_back(slot);
 }
 
-void SoftIslands::call(std::span<btRigidBody* const> bodies) {
-  awake_.clear();
-  asleep_.clear();
-  called_.clear();
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (i + kPrefetchDistance < bodies.size()) prefetch_flags(*bodies[i + kPrefetchDistance]);
-    note(*bodies[i]);
+void SoftIslands::unlist(std::uint32_t slot) {
+  std::vector<btRigidBody*>* const list = std::exchange(entries_[slot].list, nullptr);
+  if (list == nullptr) return;
+  btRigidBody* const last = list->back();
+  (*list)[entries_[slot].place] = last;
+  entries_[slot_of(*last)].place = entries_[slot].place;
+  list->pop_back();
+}
+
+void SoftIslands::put_into(std::vector<btRigidBody*>& list, std::uint32_t slot) {
+  Entry& entry = entries_[slot];
+  if (entry.list != &list) {
+    unlist(slot);
+    entry.list = &list;
+    entry.place = static_cast<std::uint32_t>(list.size());
+    list.push_back(entry.body);
   }
+  if (&list != &asleep_ || entry.settles) return;
+  entry.settles = true;
+  settling_.push_back(slot);
+}
+
+void SoftIslands::call() {
+  for (const std::uint32_t slot : changes_) {
+    if (btRigidBody* const body = entries_[slot].body) put_into(body->isActive() ? awake_ : asleep_, slot);
+  }
+  changes_.clear();
+  for (std::size_t i = 0; i < awake_.size(); ++i) {
+    if (i + kPrefetchDistance < awake_.size()) prefetch_flags(*awake_[i + kPrefetchDistance]);
+    note(*awake_[i]);
+  }
+  std::erase_if(settling_, [this](std::uint32_t slot) {
+    Entry& entry = entries_[slot];
+    if (entry.list == &asleep_) note(*entry.body);
+    entry.settles = entry.list == &asleep_ && !has(slot, kSlept);
+    return !entry.settles;
+  });
   if (knows_sleepers_) return;
   std::iota(parents_.begin(), parents_.end(), 0U);
   seams_of_sleepers_.clear();
 }
 
+/// Brings what is known of a body up to date. Sleepers are skipped once nothing of it changes any more.
 void SoftIslands::note(btRigidBody& body) {
   const std::uint32_t slot = slot_of(body);
   const core::Block& block = place_of(body).block;
   const bool sleeps = !body.isActive();
-  if (sleeps != has(slot, kKept) || (sleeps && blocks_[slot] != block)) forget_sleepers();
-  blocks_[slot] = block;
+  if (sleeps != has(slot, kKept) || (sleeps && entries_[slot].block != block)) forget_sleepers();
+  entries_[slot].block = block;
   if (!sleeps) parents_[slot] = slot;
-  if (is_asleep(body) && body.getDeactivationTime() == 0) called_.push_back(slot);
-  (sleeps ? asleep_ : awake_).push_back(&body);
+  if (is_called(body)) called_.push_back(slot);
   const int before = has(slot, kSleeps) ? kSlept : 0;
   states_[slot] = static_cast<std::uint8_t>(before | (sleeps ? kSleeps | kKept : kMoves));
 }
@@ -103,7 +153,7 @@ std::uint32_t SoftIslands::part_of(std::uint32_t slot) {
 /// Puts two bodies that touch into one part, or notes in `seams` that they touch across a seam.
 void SoftIslands::unite(std::uint32_t a, std::uint32_t b, std::vector<Seam>& seams) {
   if (a == 0 || b == 0) return;
-  if (blocks_[a] != blocks_[b]) {
+  if (entries_[a].block != entries_[b].block) {
     seams.push_back({a, b});
     return;
   }
@@ -151,12 +201,18 @@ void SoftIslands::find(std::span<const SoftTouch> touches, std::span<const SoftT
   std::ranges::sort(joints_, {}, &btTypedConstraint::getUserConstraintType);
 }
 
+void SoftIslands::mark(std::uint32_t slot, Part what) {
+  const std::uint32_t part = part_of(slot);
+  if (parts_[part] == 0) marked_.push_back(part);
+  parts_[part] |= what;
+}
+
 void SoftIslands::mark_parts(std::span<const std::uint32_t> parted) {
-  std::ranges::fill(parts_, std::uint8_t{0});
+  for (const std::uint32_t part : marked_) parts_[part] = 0;
+  marked_.clear();
   for (const btRigidBody* body : awake_) {
-    const std::uint32_t part = part_of(slot_of(*body));
-    if (!wants_to_sleep(*body)) parts_[part] |= kUp;
-    if (!is_calm(*body)) parts_[part] |= kStirs;
+    if (!wants_to_sleep(*body)) mark(slot_of(*body), kUp);
+    if (!is_calm(*body)) mark(slot_of(*body), kStirs);
   }
   const auto touched_by = [this](std::uint32_t slot, std::uint32_t other) {
     if (!is(other, kStirs)) return;
@@ -171,34 +227,43 @@ void SoftIslands::mark_parts(std::span<const std::uint32_t> parted) {
     wakes_any_ = true;
   };
   std::ranges::for_each(parted, call);
-  std::ranges::for_each(called_, call);
+  for (const std::uint32_t slot : called_) {
+    if (entries_[slot].body != nullptr && is_called(*entries_[slot].body)) call(slot);
+  }
+  called_.clear();
 }
 
 void SoftIslands::put_to_sleep() {
-  std::erase_if(awake_, [this](btRigidBody* body) {
-    const std::uint32_t slot = slot_of(*body);
-    if (is(slot, kUp | kTouched)) return false;
-    body->setActivationState(ISLAND_SLEEPING);
-    stop(*body);
+  for (std::size_t i = 0; i < awake_.size();) {
+    btRigidBody& body = *awake_[i];
+    const std::uint32_t slot = slot_of(body);
+    if (is(slot, kUp | kTouched)) {
+      ++i;
+      continue;
+    }
+    body.setActivationState(ISLAND_SLEEPING);
+    stop(body);
     states_[slot] = static_cast<std::uint8_t>((states_[slot] & ~kMoves) | kKept);
-    return true;
-  });
+    put_into(asleep_, slot);  // another body takes its place in the list
+  }
 }
 
 /// Wakes the sleepers of parts that are awake. They stay awake for at least as long as a body has to be slow before it
 /// sleeps, so that no part falls asleep and wakes by turns.
 void SoftIslands::wake() {
-  for (btRigidBody* body : asleep_) {
-    const std::uint32_t slot = slot_of(*body);
-    if (!is(slot, kUp | kTouched)) continue;
-    if (!is_asleep(*body)) {  // disabled: takes no part in the world and is alone from now on
-      forget_sleepers();
+  for (std::size_t i = 0; i < asleep_.size();) {
+    btRigidBody& body = *asleep_[i];
+    const std::uint32_t slot = slot_of(body);
+    const bool wakes = is(slot, kUp | kTouched);
+    if (!wakes || !is_asleep(body)) {
+      if (wakes) forget_sleepers();  // disabled: takes no part in the world and is alone from now on
+      ++i;
       continue;
     }
-    body->setActivationState(WANTS_DEACTIVATION);
-    body->setDeactivationTime(0);
+    body.setActivationState(WANTS_DEACTIVATION);
+    body.setDeactivationTime(0);
     states_[slot] = static_cast<std::uint8_t>((states_[slot] & ~kKept) | kMoves);
-    awake_.push_back(body);
+    put_into(awake_, slot);  // another body takes its place in the list
     has_woken_any_ = true;
   }
   std::erase_if(seams_of_sleepers_, [this](const Seam& seam) { return has(seam.a, kMoves) || has(seam.b, kMoves); });
@@ -216,43 +281,46 @@ void SoftIslands::rest(btScalar step_s) {
 
 void SoftIslands::call_neighbours() {
   for (const SoftTouch& touch : touches_) {
-    if (has(touch.slot_a, kMoves) == has(touch.slot_b, kMoves)) continue;
     const bool a_moves = has(touch.slot_a, kMoves);
-    const btRigidBody* const moved = bodies_[a_moves ? touch.slot_a : touch.slot_b];
-    btRigidBody* const other = bodies_[a_moves ? touch.slot_b : touch.slot_a];
-    if (other == nullptr || !is_asleep(*other)) continue;  // a static, or disabled
-    if (moved->getActivationState() != WANTS_DEACTIVATION) other->setDeactivationTime(0);
+    if (a_moves == has(touch.slot_b, kMoves)) continue;
+    const btRigidBody* const moved = entries_[a_moves ? touch.slot_a : touch.slot_b].body;
+    const std::uint32_t slot = a_moves ? touch.slot_b : touch.slot_a;
+    btRigidBody* const other = entries_[slot].body;
+    if (other == nullptr || !is_asleep(*other) || is_called(*other)) continue;  // a static, disabled, or done
+    if (moved->getActivationState() == WANTS_DEACTIVATION) continue;
+    other->setDeactivationTime(0);
+    called_.push_back(slot);
   }
 }
 
-/// A counting sort, because touches come in no order and each body has several. Parts matter for compounds only.
 void SoftIslands::sort(std::span<const SoftTouch> touches, soft::Team& team) {
-  const auto first_of = [](const SoftTouch& touch) { return std::min(touch.a, touch.b); };
-  const auto last_of = [](const SoftTouch& touch) { return static_cast<std::size_t>(std::max(touch.a, touch.b)); };
-  const auto counts = [&](const SoftTouch& touch) {
+  constexpr std::size_t kMany = 16;  // bodies for each touch
+  const auto acts = [this](const SoftTouch& touch) {
     return touch.acts && (has(touch.slot_a, kMoves) || has(touch.slot_b, kMoves));
   };
-  int last = -1;
-  for (const btRigidBody* body : awake_) last = std::max(last, body->getUserIndex());
-  for (const SoftTouch& touch : touches) last = std::max(last, std::max(touch.a, touch.b));
-  ends_.assign(static_cast<std::size_t>(last + 2), 0);
-  for (const SoftTouch& touch : touches) {
-    if (counts(touch)) ++ends_[last_of(touch) + 1];
+  touches_.clear();
+  std::ranges::copy_if(touches, std::back_inserter(touches_), acts);
+  std::size_t last = 0;
+  for (const SoftTouch& touch : touches_) last = std::max(last, last_of(touch));
+  if (touches_.size() * kMany < last) {
+    std::ranges::sort(touches_, comes_before);
+  } else {
+    sort_many(last, team);
   }
+}
+
+/// A counting sort, because touches come in no order and each body has several.
+void SoftIslands::sort_many(std::size_t last, soft::Team& team) {
+  unsorted_.swap(touches_);
+  ends_.assign(last + 2, 0);
+  for (const SoftTouch& touch : unsorted_) ++ends_[last_of(touch) + 1];
   for (std::size_t i = 1; i < ends_.size(); ++i) ends_[i] += ends_[i - 1];
   touches_.resize(ends_.back());
-  for (const SoftTouch& touch : touches) {
-    if (counts(touch)) touches_[ends_[last_of(touch)]++] = touch;
-  }
-
-  const auto before = [first_of](const SoftTouch& x, const SoftTouch& y) {
-    if (first_of(x) != first_of(y)) return first_of(x) < first_of(y);
-    return std::tie(x.a, x.parts) < std::tie(y.a, y.parts);
-  };
+  for (const SoftTouch& touch : unsorted_) touches_[ends_[last_of(touch)]++] = touch;
   // each entry of ends_ is now the end of its body's touches
   team.for_each(ends_.size() - 1, [&](std::size_t body) {
     std::sort(touches_.begin() + static_cast<std::ptrdiff_t>(body > 0 ? ends_[body - 1] : 0),
-              touches_.begin() + static_cast<std::ptrdiff_t>(ends_[body]), before);
+              touches_.begin() + static_cast<std::ptrdiff_t>(ends_[body]), comes_before);
   });
 }
 

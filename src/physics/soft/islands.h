@@ -2,14 +2,15 @@
 // joints in an order that follows from the bodies alone.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "physics/soft/threads.h"
 #include <LinearMath/btScalar.h>
 
 #include "core/block.h"
+#include "physics/soft/threads.h"
 #include "physics/soft/touch.h"
 
 class btRigidBody;
@@ -22,25 +23,33 @@ namespace aurasim::physics {
 /// has to be known of the other block. Bullet's activation states mean: WANTS_DEACTIVATION: the body is still, and its
 /// part was calm in the step that led to this state. A sleeper with deactivation time 0 wakes in the next step.
 ///
-/// The touches of sleepers stay until one of them wakes, arrives or leaves, so a step only tests whether each still
-/// sleeps. A body's user index grows with its id; a static's is negative. Nothing is allocated once warm.
+/// A step costs nothing for a sleeper. Its touches stay until one of them wakes, arrives or leaves. Whoever changes the
+/// activation state or the block of a body from outside says so (note_change() in moving_body.h). A body's user index
+/// grows with its id; a static's is negative. Nothing is allocated once warm.
 class SoftIslands {
  public:
+  SoftIslands() = default;
+  SoftIslands(const SoftIslands&) = delete;  // bodies know changes_
+  SoftIslands& operator=(const SoftIslands&) = delete;
+
   /// Gives a body that enters the world a slot (its user index 3), which stays the same until it leaves. Slot 0:
   /// statics.
   void insert(btRigidBody& body);
-  void remove(const btRigidBody& body);
+  void remove(btRigidBody& body);
 
   /// Forgets which bodies slept, as if all of them had just entered the world.
   void forget_past();
 
   /// Finds the awake bodies at the start of a step.
-  void call(std::span<btRigidBody* const> bodies);
+  void call();
   /// Did the body sleep at the last call(), and at the one in the step before? Always true for statics.
   bool sleeps(std::uint32_t slot) const { return has(slot, kSleeps); }
   bool slept(std::uint32_t slot) const { return has(slot, kSlept); }
   /// Are the touches of sleepers known? If not, find() has to get them as `of_sleepers`.
   bool knows_sleepers() const { return knows_sleepers_; }
+
+  /// After call(): nobody is awake, and nothing has to be found out about sleepers.
+  bool are_at_rest() const { return awake_.empty() && knows_sleepers_; }
 
   /// Puts parts to sleep or wakes them. `parted`: slots of sleepers that have lost the touch of a body that is awake.
   void find(std::span<const SoftTouch> touches, std::span<const SoftTouch> of_sleepers,
@@ -53,8 +62,11 @@ class SoftIslands {
   void sort(std::span<const SoftTouch> touches, soft::Team& team);
 
   /// Gives the bodies that have moved in the step their activation states, after their velocities are known. Sleepers
-  /// that one of them has touched across a seam will wake in the next step, unless it is quiet.
+  /// that one of them has touched across a seam are called: they wake in the next step, unless it is quiet.
   void rest(btScalar step_s);
+  /// Slots of the sleepers that rest() has called. Their deactivation times have changed.
+  std::span<const std::uint32_t> called() const { return called_; }
+  const btRigidBody& body_at(std::uint32_t slot) const { return *entries_[slot].body; }
 
   /// After call(): bodies that did not sleep. After find(): bodies that move in the step.
   std::span<btRigidBody* const> awake() const { return awake_; }
@@ -77,6 +89,13 @@ class SoftIslands {
     kTouched = 4,  ///< a body of a part that stirs touches it across a seam
   };
 
+  struct Entry {
+    btRigidBody* body = nullptr;
+    core::Block block{0, 0};
+    std::vector<btRigidBody*>* list = nullptr;  ///< awake_ or asleep_
+    std::uint32_t place = 0;                    ///< in the list
+    bool settles = false;                       ///< it is in settling_
+  };
   /// Slots of two bodies of two blocks that touch.
   struct Seam {
     std::uint32_t a, b;
@@ -86,30 +105,35 @@ class SoftIslands {
   void forget_sleepers() { knows_sleepers_ = false; }
   bool has(std::uint32_t slot, State state) const { return (states_[slot] & state) != 0; }
   void note(btRigidBody& body);
+  void unlist(std::uint32_t slot);
+  void put_into(std::vector<btRigidBody*>& list, std::uint32_t slot);
   std::uint32_t part_of(std::uint32_t slot);
-  void mark(std::uint32_t slot, Part what) { parts_[part_of(slot)] |= what; }
+  void mark(std::uint32_t slot, Part what);
   bool is(std::uint32_t slot, int what) { return (parts_[part_of(slot)] & what) != 0; }
   void unite(std::uint32_t a, std::uint32_t b, std::vector<Seam>& seams);
   void mark_parts(std::span<const std::uint32_t> parted);
   void put_to_sleep();
   void wake();
   void call_neighbours();
+  void sort_many(std::size_t last, soft::Team& team);
 
   std::vector<std::uint8_t> states_{kSleeps | kSlept | kKept};  ///< by slot, as the following vectors
   std::vector<std::uint32_t> parents_{0};
   std::vector<std::uint8_t> parts_{0};  ///< flags Part, by the first slot of a part
-  std::vector<core::Block> blocks_{core::Block{0, 0}};
-  std::vector<btRigidBody*> bodies_{nullptr};
+  std::vector<Entry> entries_{1};
   std::vector<std::uint32_t> free_;
   std::vector<Seam> seams_;              ///< with a body that was awake at call()
   std::vector<Seam> seams_of_sleepers_;  ///< with two sleepers, if their touches are known
   std::vector<std::uint32_t> called_;    ///< sleepers that are to wake
+  std::vector<std::uint32_t> changes_;   ///< slots of bodies that have come or were changed from outside
+  std::vector<std::uint32_t> settling_;  ///< sleepers whose flags may still change
+  std::vector<std::uint32_t> marked_;    ///< parts with flags
   bool knows_sleepers_ = true;
   bool wakes_any_ = false;
   bool has_woken_any_ = false;
   std::vector<btRigidBody*> awake_;
-  std::vector<btRigidBody*> asleep_;  ///< bodies that slept at call()
-  std::vector<SoftTouch> touches_;
+  std::vector<btRigidBody*> asleep_;  ///< or disabled
+  std::vector<SoftTouch> touches_, unsorted_;
   std::vector<std::uint32_t> ends_;  ///< by user index: end of the body's touches
   std::vector<btTypedConstraint*> joints_;
 };

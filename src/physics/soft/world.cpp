@@ -39,11 +39,11 @@ class SoftWorld final : public World {
         looks_ahead_(settings.continuous) {}
 
   int stepSimulation(btScalar step_s, int, btScalar) override {
-    islands_.call(span_of(m_nonStaticRigidBodies));
+    islands_.call();
     team_.employ_for(islands_.awake().size());
     damp(step_s);
     bound();
-    m_broadphasePairCache->calculateOverlappingPairs(m_dispatcher1);
+    if (!islands_.are_at_rest()) m_broadphasePairCache->calculateOverlappingPairs(m_dispatcher1);
     core::Progress::mark();
     contacts_.look(*getPairCache(), static_cast<btCollisionDispatcher&>(*m_dispatcher1), getDispatchInfo(),
                    getGravity());
