@@ -270,13 +270,18 @@ void SoftIslands::wake() {
 }
 
 void SoftIslands::rest(btScalar step_s) {
-  for (btRigidBody* body : awake_) {
-    const bool is_calm = !is(slot_of(*body), kStirs);
-    body->updateDeactivation(step_s);
-    if (body->getActivationState() == DISABLE_DEACTIVATION) continue;
-    body->setActivationState(is_calm && is_still(*body) ? WANTS_DEACTIVATION : ACTIVE_TAG);
-  }
+  for (btRigidBody* body : awake_) rest(*body, step_s);
   call_neighbours();
+}
+
+/// Writes nothing but the body, so threads may share the bodies.
+void SoftIslands::rest(btRigidBody& body, btScalar step_s) const {
+  body.updateDeactivation(step_s);
+  if (body.getActivationState() == DISABLE_DEACTIVATION) return;
+  std::uint32_t part = slot_of(body);
+  while (parents_[part] != part) part = parents_[part];
+  const bool is_calm = (parts_[part] & kStirs) == 0 && is_still(body);
+  body.setActivationState(is_calm ? WANTS_DEACTIVATION : ACTIVE_TAG);
 }
 
 void SoftIslands::call_neighbours() {

@@ -19,9 +19,9 @@ class btTypedConstraint;
 namespace aurasim::physics {
 
 /// A *part* is a set of bodies of one block that contacts and joints connect. It falls asleep and wakes as a whole.
-/// What touches it across a seam of blocks only counts by its own state of before, so no more than the touching bodies
-/// has to be known of the other block. Bullet's activation states mean: WANTS_DEACTIVATION: the body is still, and its
-/// part was calm in the step that led to this state. A sleeper with deactivation time 0 wakes in the next step.
+/// Of what touches it across a seam of blocks, only counts whether its part stirs. That follows from the other block
+/// alone. Bullet's activation state WANTS_DEACTIVATION means here: the body is still, and its part did not stir in the
+/// step that led to this state. A sleeper with deactivation time 0 wakes in the next step.
 ///
 /// A step costs nothing for a sleeper. Its touches stay until one of them wakes, arrives or leaves. Whoever changes the
 /// activation state or the block of a body from outside says so (note_change() in moving_body.h). A body's user index
@@ -62,9 +62,9 @@ class SoftIslands {
   void sort(std::span<const SoftTouch> touches, soft::Team& team);
 
   /// Gives the bodies that have moved in the step their activation states, after their velocities are known. Sleepers
-  /// that one of them has touched across a seam are called: they wake in the next step, unless it is quiet.
+  /// that one of them has touched across a seam are called, unless it is calm: they wake in the next step.
   void rest(btScalar step_s);
-  /// Slots of the sleepers that rest() has called. Their deactivation times have changed.
+  /// After rest(): slots of the sleepers that it has called. Their deactivation times have changed.
   std::span<const std::uint32_t> called() const { return called_; }
   const btRigidBody& body_at(std::uint32_t slot) const { return *entries_[slot].body; }
 
@@ -114,6 +114,7 @@ class SoftIslands {
   void mark_parts(std::span<const std::uint32_t> parted);
   void put_to_sleep();
   void wake();
+  void rest(btRigidBody& body, btScalar step_s) const;
   void call_neighbours();
   void sort_many(std::size_t last, soft::Team& team);
 
