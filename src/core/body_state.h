@@ -58,12 +58,24 @@ inline const BodyState* find_body(const std::vector<BodyState>& bodies, BodyId i
   return place != bodies.end() && place->id == id ? &*place : nullptr;
 }
 
-/// All bodies of one node in state `step`, in ascending order of id. A snapshot is never changed after it was taken.
+/// All bodies of one node in state `step`, in ascending order of id. Its reader may keep what it has derived from the
+/// snapshot before: most bodies of a large world sleep, and a reader then looks at those only that have changed.
 struct Snapshot {
   Step step = 0;
   std::vector<BodyState> bodies;
   std::vector<Contact> contacts;  ///< between bodies, not with statics
   std::vector<Contact> joints;    ///< pairs of bodies held together by a joint
+  std::size_t born = 0;           ///< number of bodies that exist already
+  std::size_t awake = 0;          ///< number of those that are awake
+
+  std::uint64_t number = 0;  ///< counts the snapshots of a world, from 1; 0: nothing is known of those before
+  /// True if the snapshot before has the same bodies and joints, and differs only in what `changed` names.
+  bool goes_on = false;
+  std::vector<std::uint32_t> changed;     ///< indices of the bodies that may have changed; ascending
+  std::vector<Contact> changed_contacts;  ///< contacts of those bodies; ascending
+
+  /// True if `changed` names all differences from the snapshot of this number.
+  bool goes_on_from(std::uint64_t earlier) const { return goes_on && earlier != 0 && number == earlier + 1; }
 };
 
 /// Indices of a block's columns along x and y (core/block.h).

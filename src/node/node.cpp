@@ -215,7 +215,7 @@ void Node::finish_state() {
   }
   if (setup_.hash_states) {
     const Timed timed(report_.durations.hash_s, setup_.clock);
-    report_.hash.push_back({snapshot->step, physics::state_hash_sum(world_.records())});
+    report_.hash.push_back({snapshot->step, world_.hash_sum()});
   }
   count(*snapshot);
   const std::vector<core::Departure>* departures = nullptr;

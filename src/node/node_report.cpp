@@ -59,12 +59,8 @@ void Node::note_arrivals(const core::Adoption& adoption) {
 
 void Node::count(const core::Snapshot& snapshot) {
   report_.step = snapshot.step;
-  report_.bodies = report_.awake = 0;
-  for (const core::BodyState& body : snapshot.bodies) {
-    if (body.birth > snapshot.step) continue;
-    ++report_.bodies;
-    report_.awake += body.awake;
-  }
+  report_.bodies = snapshot.born;
+  report_.awake = snapshot.awake;
 }
 
 }  // namespace aurasim::node

@@ -1,6 +1,7 @@
 // The bodies that one world holds, in ascending order of id.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -18,6 +19,7 @@ struct HostedBody {
   core::Step birth = 0;
   bool born = false;                   ///< true: the body is in Bullet's world
   std::unique_ptr<btRigidBody> rigid;  ///< a MovingBody; its user index is its place in the table
+  std::uint64_t hash = 0;              ///< its part of KeptHash::sum()
 
   core::BodyRecord record() const;
   core::BodyState state() const;

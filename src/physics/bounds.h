@@ -13,11 +13,11 @@ struct Bounds {
 
   void add(const Bounds& other) { low.setMin(other.low), high.setMax(other.high); }
   Bounds grown(btScalar by) const { return {low - btVector3(by, by, by), high + btVector3(by, by, by)}; }
-  /// Do the two boxes come within 10 cm of each other?
+  static constexpr btScalar kNear_m = btScalar(0.1);
+  /// Do the two boxes come within kNear_m of each other?
   bool is_near(const Bounds& other) const {
-    constexpr btScalar kNear = btScalar(0.1);
     for (int axis = 0; axis < 3; ++axis) {
-      if (low[axis] - kNear > other.high[axis] || high[axis] + kNear < other.low[axis]) return false;
+      if (low[axis] - kNear_m > other.high[axis] || high[axis] + kNear_m < other.low[axis]) return false;
     }
     return true;
   }

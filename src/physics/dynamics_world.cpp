@@ -173,6 +173,14 @@ void DynamicsWorld::step(double substep_s) {
 
 std::span<btPersistentManifold* const> DynamicsWorld::manifolds() const { return manifolds_of(bullet_->dispatcher); }
 
+bool DynamicsWorld::knows_moved() const { return bullet_->world->knows_moved(); }
+
+std::span<btRigidBody* const> DynamicsWorld::moved() const { return bullet_->world->moved(); }
+
+void DynamicsWorld::add_contacts_of_moved(std::vector<core::Contact>& contacts) const {
+  bullet_->world->add_contacts_of_moved(contacts);
+}
+
 void DynamicsWorld::make_manifolds(btRigidBody& a, btRigidBody& b, std::vector<PartManifold>& result) {
   result.clear();
   const Awake awake(a.isStaticObject() ? b : a);
@@ -193,6 +201,22 @@ void DynamicsWorld::make_manifolds(btRigidBody& a, btRigidBody& b, std::vector<P
 
 void DynamicsWorld::cast(const btVector3& from, const btVector3& to, btCollisionWorld::RayResultCallback& hit) const {
   bullet_->world->rayTest(from, to, hit);
+}
+
+void DynamicsWorld::find_near(const Bounds& bounds, std::vector<std::uint32_t>& found) const {
+  struct Finder final : btBroadphaseAabbCallback {
+    Finder(const Bounds& where_in, std::vector<std::uint32_t>& found_in) : where(where_in), found(found_in) {}
+    bool process(const btBroadphaseProxy* proxy) override {
+      const int index = static_cast<const btCollisionObject*>(proxy->m_clientObject)->getUserIndex();
+      if (index >= 0 && bounds_of(*proxy).is_near(where)) found.push_back(static_cast<std::uint32_t>(index));
+      return true;
+    }
+    const Bounds& where;
+    std::vector<std::uint32_t>& found;
+  };
+  Finder finder(bounds, found);
+  const Bounds wide = bounds.grown(2 * Bounds::kNear_m);  // the tree's boxes are not rounded as is_near() rounds
+  bullet_->broadphase.aabbTest(wide.low, wide.high, finder);
 }
 
 soft::Team& DynamicsWorld::team() { return bullet_->team; }

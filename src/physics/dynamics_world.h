@@ -8,6 +8,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
 
 #include "core/body_state.h"
+#include "physics/bounds.h"
 #include "physics/contact_cache.h"
 #include "physics/contact_impulses.h"
 #include "physics/first_contacts.h"
@@ -55,6 +56,11 @@ class DynamicsWorld {
 
   std::span<btPersistentManifold* const> manifolds() const;
 
+  /// See World in physics/stepper.h. Valid until bodies come or go.
+  bool knows_moved() const;
+  std::span<btRigidBody* const> moved() const;
+  void add_contacts_of_moved(std::vector<core::Contact>& contacts) const;
+
   /// Makes the manifolds of a pair, even if both bodies sleep, empties them, and lists them in `result`. Others would
   /// not outlive the next collision detection.
   void make_manifolds(btRigidBody& a, btRigidBody& b, std::vector<PartManifold>& result);
@@ -62,6 +68,8 @@ class DynamicsWorld {
   /// Casts a ray and passes `hit` every object on the way that it does not reject.
   void cast(const btVector3& from, const btVector3& to, btCollisionWorld::RayResultCallback& hit) const;
 
+  /// Appends the user indices of bodies whose boxes in the broadphase come within Bounds::kNear_m of `bounds`.
+  void find_near(const Bounds& bounds, std::vector<std::uint32_t>& found) const;
   /// The threads that step this world.
   soft::Team& team();
 

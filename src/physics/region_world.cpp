@@ -153,6 +153,8 @@ const core::Snapshot& RegionWorld::snapshot() { return impl_->simulation.snapsho
 
 std::span<const core::BodyRecord> RegionWorld::records() { return impl_->simulation.records(); }
 
+std::uint64_t RegionWorld::hash_sum() { return impl_->simulation.hash_sum(); }
+
 const std::vector<Collision>& RegionWorld::collisions() const { return impl_->collisions; }
 
 void RegionWorld::watch_contacts(bool wanted) {

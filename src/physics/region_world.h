@@ -104,6 +104,9 @@ class RegionWorld {
   /// Records of all born bodies in ascending order of id. Valid until the next change.
   std::span<const core::BodyRecord> records();
 
+  /// The sum of the state hashes (state_hash.h) of all born bodies, modulo 2^64.
+  std::uint64_t hash_sum();
+
   /// First contacts found while the last step was computed, and those of clusters that have caught up since the step
   /// before (with an earlier `step`). Ordered by (a, b, step).
   const std::vector<Collision>& collisions() const;

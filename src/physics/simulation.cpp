@@ -74,10 +74,10 @@ void Simulation::start_at(core::Step step) {
   joints_.forget();
   if (timeline_.statics_change()) show_statics(step);
   place_moving_statics();
-  snapshot_is_fresh_ = records_are_fresh_ = false;
+  note_all();
 }
 
-HostedBody Simulation::make_body(const core::BodyRecord& record) const {
+HostedBody Simulation::make_body(const core::BodyRecord& record) {
   if (contains(record.id)) refuse_twin(record.id);
   rank_of(record.id);  // or throws
   const core::Prototype& prototype = scene_->prototypes.at(core::value_of(record.prototype));
@@ -97,7 +97,7 @@ HostedBody Simulation::make_body(const core::BodyRecord& record) const {
 }
 
 /// Gives a body the state of a record, whatever its state was before.
-void Simulation::set_motion(btRigidBody& rigid, const core::BodyRecord& record) const {
+void Simulation::set_motion(btRigidBody& rigid, const core::BodyRecord& record) {
   rigid.setLinearVelocity(to_bullet(record.v_WB));
   rigid.setAngularVelocity(to_bullet(record.w_WB));
   rigid.setCenterOfMassTransform(btTransform(to_bullet(record.R_WB), to_bullet(record.p_WB)));
@@ -106,6 +106,9 @@ void Simulation::set_motion(btRigidBody& rigid, const core::BodyRecord& record) 
   const bool keeps_state = can_sleep || record.activation_state == DISABLE_SIMULATION;
   rigid.forceActivationState(keeps_state ? record.activation_state : DISABLE_DEACTIVATION);
   rigid.setDeactivationTime(static_cast<btScalar>(record.deactivation_time));
+  // The soft step stops a sleeper that comes with a velocity.
+  const bool is_still = record.v_WB.isZero(0) && record.w_WB.isZero(0);
+  will_stop_sleepers_ = will_stop_sleepers_ || (!rigid.isActive() && !is_still);
   place_of(rigid).block = record.block.is_known() ? record.block : core::block_at(record.p_WB, settings_.block_m);
 }
 
@@ -121,12 +124,20 @@ void Simulation::put_in(std::span<const core::BodyRecord> bodies) {
   for (const core::BodyRecord& record : bodies) arrivals.push_back(make_body(record));
   refuse_twins(arrivals);
   table_.insert(std::move(arrivals));
-  snapshot_is_fresh_ = records_are_fresh_ = false;
+  for (const core::BodyRecord& record : bodies) note_new(record.id);
+  next_birth_ = std::min(next_birth_, step_);  // they have not been asked yet
 }
 
 void Simulation::insert_born() {
+  if (step_ < next_birth_) return;
+  next_birth_ = std::numeric_limits<core::Step>::max();
   for (HostedBody& body : table_.bodies()) {
-    if (body.born || body.birth > step_) continue;
+    if (body.born) continue;
+    if (body.birth > step_) {
+      next_birth_ = std::min(next_birth_, body.birth);
+      continue;
+    }
+    note_new(body.id);
     world_.insert(*body.rigid, rank_of(body.id), scene_->prototypes[core::value_of(body.prototype)].collides);
     body.born = true;
     joints_.connect(body.id, table_, world_);
@@ -216,6 +227,7 @@ void Simulation::step() {
     core::Progress::mark();
     joints_.finish_look(world_);
   }
+  note_moved();
   stop_pushing();
   ++step_;
   place_moving_statics();
@@ -224,7 +236,22 @@ void Simulation::step() {
   take_out_what_broke();
   insert_born();
   settle_blocks();
+  notes_.for_step.clear();
+}
+
+/// Notes the bodies that the step has moved, and their contacts.
+void Simulation::note_moved() {
   snapshot_is_fresh_ = records_are_fresh_ = false;
+  moved_contacts_.clear();
+  moved_.clear();
+  if (++steps_since_snapshot_ > 1) notes_.for_snapshot.note_all();  // contacts of the step before are not known
+  if (!world_.knows_moved() || std::exchange(will_stop_sleepers_, false)) return notes_.note_all();
+  for (const btRigidBody* body : world_.moved()) {
+    const auto place = static_cast<std::size_t>(body->getUserIndex());
+    moved_.push_back(static_cast<std::uint32_t>(place));
+    notes_.note(table_[place].id);
+  }
+  world_.add_contacts_of_moved(moved_contacts_);
 }
 
 void Simulation::collect_collisions() {
@@ -241,73 +268,6 @@ void Simulation::collect_collisions() {
   const auto end = std::unique(collisions_.begin(), collisions_.end(),
                                [&](const auto& a, const auto& b) { return pair_of(a) == pair_of(b); });
   collisions_.erase(end, collisions_.end());
-}
-
-double Simulation::bounding_radius(const HostedBody& body) const {
-  return core::bounding_radius(scene_->shapes.at(scene_->prototypes.at(core::value_of(body.prototype)).shape).shape);
-}
-
-const core::Snapshot& Simulation::snapshot() {
-  if (!snapshot_is_fresh_) {
-    snapshot_.step = step_;
-    snapshot_.bodies.clear();
-    const std::vector<std::uint32_t> coming_statics = timeline_.statics_coming(step_);
-    if (!coming_statics.empty()) make_statics();
-    note_moving_statics();
-    const std::vector<Shove> shoves = coming_shoves();
-    const bool something_comes = !coming_statics.empty() || !timeline_.coming(step_).empty();
-    const std::vector<double> pushes = coming_pushes();
-    for (const HostedBody& body : table_.bodies()) {
-      core::BodyState& state = snapshot_.bodies.emplace_back(body.state());
-      if (something_comes) state.coming_kick_m_s = coming_kick(body, coming_statics);
-      if (!pushes.empty()) state.coming_kick_m_s += pushes[snapshot_.bodies.size() - 1];
-      state.coming_kick_m_s += coming_shove(body, shoves);
-      state.awake = state.awake || state.coming_kick_m_s > 0;
-    }
-    list_contacts();
-    joints_.list_pairs(table_, snapshot_.joints);
-    snapshot_is_fresh_ = true;
-  }
-  return snapshot_;
-}
-
-/// Lists the contacts of the snapshot in order. Uses a counting sort, because manifolds come in no order and each body
-/// has several.
-void Simulation::list_contacts() {
-  unsorted_contacts_.clear();
-  contacts_before_.assign(table_.size() + 1, 0);
-  for_each_touching(world_.manifolds(), [this](const btPersistentManifold& manifold) {
-    const auto [a, b] = std::minmax({manifold.getBody0()->getUserIndex(), manifold.getBody1()->getUserIndex()});
-    if (is_static(a)) return;  // no test of distance: gaps of points never exceed kContactMargin
-    unsorted_contacts_.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
-    ++contacts_before_[static_cast<std::size_t>(a) + 1];
-  });
-  for (std::size_t i = 1; i < contacts_before_.size(); ++i) contacts_before_[i] += contacts_before_[i - 1];
-
-  std::vector<core::Contact>& contacts = snapshot_.contacts;
-  contacts.resize(unsorted_contacts_.size());
-  for (const core::Contact& contact : unsorted_contacts_) contacts[contacts_before_[contact.a]++] = contact;
-  std::size_t first = 0;
-  // each entry of contacts_before_ is now the end of its body's contacts
-  for (std::size_t a = 0; a < table_.size(); ++a) {
-    const auto of_body = std::span(contacts).subspan(first, contacts_before_[a] - first);
-    std::sort(of_body.begin(), of_body.end(), [](const auto& x, const auto& y) { return x.b < y.b; });
-    first = contacts_before_[a];
-  }
-  core::Progress::mark();
-  const auto same = [](const core::Contact& x, const core::Contact& y) { return x.a == y.a && x.b == y.b; };
-  contacts.erase(std::unique(contacts.begin(), contacts.end(), same), contacts.end());
-}
-
-std::span<const core::BodyRecord> Simulation::records() {
-  if (!records_are_fresh_) {
-    records_.clear();
-    for (const HostedBody& body : table_.bodies()) {
-      if (body.born) records_.push_back(body.record());
-    }
-    records_are_fresh_ = true;
-  }
-  return records_;
 }
 
 }  // namespace aurasim::physics

@@ -16,10 +16,12 @@
 #include "physics/bullet_convert.h"
 #include "physics/dynamics_world.h"
 #include "physics/joint_table.h"
+#include "physics/kept_hash.h"
 #include "physics/moving_static.h"
 #include "physics/results.h"
 #include "physics/settings.h"
 #include "physics/shapes.h"
+#include "physics/state_notes.h"
 #include "physics/timeline.h"
 
 namespace aurasim::physics {
@@ -55,6 +57,7 @@ class Simulation {
 
   const core::Snapshot& snapshot();
   std::span<const core::BodyRecord> records();
+  std::uint64_t hash_sum() { return hash_.sum(table_, notes_.for_hash); }
   const std::vector<Collision>& collisions() const { return collisions_; }
   std::uint64_t severed_contacts() const { return severed_contacts_; }
   void watch_contacts(bool wanted) { world_.contact_impulses().want(wanted); }
@@ -94,19 +97,28 @@ class Simulation {
   };
   std::vector<Shove> coming_shoves() const;
   double coming_shove(const HostedBody& body, std::span<const Shove> shoves) const;
+  void find_near(std::span<const Bounds> places);
+  void note_near(const Bounds& where);
   double coming_kick(const HostedBody& body, std::span<const std::uint32_t> coming_statics) const;
   void heed_setpoints(core::Step n);
   bool heed(btRigidBody& body, core::Quantity quantity, const core::Vec3& value);
   void push();
   void stop_pushing();
-  std::vector<double> coming_pushes() const;
+  /// By how much setpoints will change the velocity of the surface of the body at `place`, m/s.
+  struct PlacedPush {
+    std::size_t place;
+    double change_m_s;
+  };
+  std::vector<PlacedPush> coming_pushes() const;
+  double kick_ahead(const HostedBody& body, std::size_t place, std::span<const std::uint32_t> coming_statics,
+                    std::span<const PlacedPush> pushes, std::span<const Shove> shoves) const;
   /// Bounding radius of a body's shape, m. Expensive for hulls: all points are searched.
   double bounding_radius(const HostedBody& body) const;
   /// Number of states for which other nodes act upon the auras of the present state.
   core::Step foreseen() const { return static_cast<core::Step>(std::ceil(settings_.foresight_s / settings_.step_s)); }
   void put_in(std::span<const core::BodyRecord> bodies);
-  HostedBody make_body(const core::BodyRecord& record) const;
-  void set_motion(btRigidBody& rigid, const core::BodyRecord& record) const;
+  HostedBody make_body(const core::BodyRecord& record);
+  void set_motion(btRigidBody& rigid, const core::BodyRecord& record);
   std::vector<core::BodyRecord> take_out_all_but(std::span<const core::BodyRecord> bodies, core::Step step);
   int rank_of(core::BodyId id) const;
   btRigidBody* find_object(core::ObjectRef ref);
@@ -119,6 +131,13 @@ class Simulation {
   void collect_collisions();
   void collect_contact_impulses();
   void list_contacts();
+  void list_changed_contacts();
+  void show_state(const HostedBody& body, std::size_t place, double coming_kick_m_s);
+  void erase(const std::vector<bool>& leaving);
+  void note_moved();
+  void note(core::BodyId id);
+  void note_new(core::BodyId id);
+  void note_all();
 
   const core::Scene* scene_;
   Settings settings_;
@@ -152,12 +171,22 @@ class Simulation {
   std::vector<core::BodySetpoint> new_setpoints_;
 
   mutable std::vector<KeyedManifold> copied_manifolds_;  ///< of copy_all(), kept for its memory
+  StateNotes notes_;
+  KeptHash hash_;
+  bool will_stop_sleepers_ = false;  ///< the next step may change sleepers
+  core::Step next_birth_ = 0;        ///< no body is born before
+  int steps_since_snapshot_ = 0;
+  std::vector<std::uint32_t> moved_;           ///< places of the bodies that the last step has moved
+  std::vector<core::Contact> moved_contacts_;  ///< their contacts, in no order
+  std::vector<core::BodyId> kicked_;           ///< bodies of the snapshot with a coming kick, or not yet born
   bool snapshot_is_fresh_ = false;
   core::Snapshot snapshot_;
   bool records_are_fresh_ = false;
   std::vector<core::BodyRecord> records_;
   std::vector<core::Contact> unsorted_contacts_;
   std::vector<std::uint32_t> contacts_before_;  ///< by body: number of contacts of all bodies before it
+  std::vector<std::uint32_t> near_;             ///< of find_near()
+  std::vector<std::uint8_t> is_moved_;          ///< by body: it is among moved_; all 0 between two calls
   std::vector<PartManifold> of_pair_;
 };
 

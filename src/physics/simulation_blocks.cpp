@@ -9,17 +9,22 @@ namespace aurasim::physics {
 /// of a mechanism that of its first body. Does nothing if that has been done in this state before.
 void Simulation::settle_blocks() {
   const bool mechanisms_changed = joints_.mechanisms_changed();
-  if (mechanisms_changed) bind_mechanisms();
-  bool any_left = false;
-  for (const HostedBody& body : table_.bodies()) {
-    if (!body.born || !body.rigid->isActive()) continue;  // only awake bodies have moved
-    BodyPlace& place = place_of(*body.rigid);
-    if (place.is_bound) continue;
-    const core::Vec3 p_WB = from_bullet(body.rigid->getWorldTransform().getOrigin());
-    if (!core::leaves(p_WB, place.block, settings_.block_m)) continue;
-    place.block = core::block_at(p_WB, settings_.block_m);
-    any_left = true;
+  if (mechanisms_changed) {
+    bind_mechanisms();
+    notes_.for_snapshot.note_all();  // its joints are others
+    notes_.for_step.note_all();      // bodies that were bound have blocks of their own
   }
+  bool any_left = false;
+  notes_.for_step.for_each(table_, [&](const HostedBody& body, std::size_t) {
+    if (!body.born || !body.rigid->isActive()) return;  // only awake bodies have moved
+    BodyPlace& place = place_of(*body.rigid);
+    if (place.is_bound) return;
+    const core::Vec3 p_WB = from_bullet(body.rigid->getWorldTransform().getOrigin());
+    if (!core::leaves(p_WB, place.block, settings_.block_m)) return;
+    place.block = core::block_at(p_WB, settings_.block_m);
+    notes_.for_hash.note(body.id);
+    any_left = true;
+  });
   if (!any_left && !mechanisms_changed) return;
   for (const core::BoundBody& bound : joints_.mechanisms()) {
     btRigidBody& rigid = *table_.find(bound.body)->rigid;
@@ -27,6 +32,7 @@ void Simulation::settle_blocks() {
     if (place_of(rigid).block == of_first) continue;
     place_of(rigid).block = of_first;
     note_change(rigid);
+    notes_.for_hash.note(bound.body);
   }
   records_are_fresh_ = false;
 }

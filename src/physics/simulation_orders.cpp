@@ -101,18 +101,16 @@ void Simulation::kick(btRigidBody& body, const core::Order& order) {
     body.setLinearVelocity(to_bullet(velocity->v_WB));
     if (velocity->w_WB) body.setAngularVelocity(to_bullet(*velocity->w_WB));
   }
-  snapshot_is_fresh_ = records_are_fresh_ = false;
+  note(table_[static_cast<std::size_t>(body.getUserIndex())].id);
 }
 
 /// Removes bodies that have broken down, after state step_ has been computed. Every host does the same, because a
 /// body's state depends on its island alone.
 void Simulation::take_out_what_broke() {
   std::vector<Removal> broken;
-  for (const HostedBody& body : table_.bodies()) {
-    if (body.born && has_broken_down(*body.rigid)) {
-      broken.push_back({step_, body.id, fault_of(*body.rigid)});
-    }
-  }
+  notes_.for_step.for_each(table_, [&](const HostedBody& body, std::size_t) {
+    if (body.born && has_broken_down(*body.rigid)) broken.push_back({step_, body.id, fault_of(*body.rigid)});
+  });
   for (const Removal& removal : broken) take_out(removal);
 }
 
@@ -122,8 +120,10 @@ void Simulation::take_out(const Removal& removal) {
     const btRigidBody* const gone = table_.find(id)->rigid.get();
     for (const auto& [one, other] :
          {std::pair(manifold.getBody0(), manifold.getBody1()), std::pair(manifold.getBody1(), manifold.getBody0())}) {
-      if (one == gone && other->getUserIndex() >= 0)
-        awaken(*table_[static_cast<std::size_t>(other->getUserIndex())].rigid);
+      if (one != gone || other->getUserIndex() < 0) continue;
+      const HostedBody& woken = table_[static_cast<std::size_t>(other->getUserIndex())];
+      awaken(*woken.rigid);
+      note(woken.id);
     }
   });
   const std::uint64_t severed = severed_contacts_;

@@ -26,7 +26,7 @@ void Simulation::put_back(core::Step step, const core::ClusterState& then) {
   joints_.put_back(then, table_, world_);
   insert_born();
   restore_contacts(then);
-  snapshot_is_fresh_ = records_are_fresh_ = false;
+  note_all();
 }
 
 /// Removes the bodies that are not among `bodies`, or are others there, or are born later than state `step`. Returns
@@ -55,7 +55,7 @@ std::vector<core::BodyRecord> Simulation::take_out_all_but(std::span<const core:
   if (leaving.bodies.empty()) return arrivals;
   joints_.disconnect(leaving, table_, world_);
   world_.remove(born);
-  table_.erase(leaves);
+  erase(leaves);
   return arrivals;
 }
 

@@ -108,8 +108,7 @@ std::vector<core::ClusterState> Simulation::release(std::span<const std::span<co
   for (const core::ClusterState& cluster : leaving.clusters) joints_.disconnect(cluster, table_, world_);
   core::Progress::mark();
   world_.remove(born);
-  table_.erase(leaves);
-  snapshot_is_fresh_ = records_are_fresh_ = false;
+  erase(leaves);
   return std::move(leaving.clusters);
 }
 

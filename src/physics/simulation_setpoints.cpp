@@ -1,6 +1,7 @@
 // Application of programs' setpoints (core/control_log.h) in each state that a simulation computes.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "physics/awaken.h"
 #include "physics/bullet_convert.h"
@@ -48,6 +49,11 @@ std::optional<Driven> driven(const btRigidBody& body, const core::Vec3& value) {
 struct ComingPush {
   double linear_m_s = 0, turn_rad_s = 0;
 
+  void add(const ComingPush& other) {
+    note_linear(other.linear_m_s);
+    note_turn(other.turn_rad_s);
+  }
+
   void note(const btRigidBody& body, core::Quantity quantity, const core::Vec3& value, double foresight_s) {
     switch (quantity) {
       case core::Quantity::kForce:  // an acceleration a takes it a t^2 / 2 off its path in the time t
@@ -90,7 +96,7 @@ void Simulation::heed_setpoints(core::Step n) {
     if (is_new) new_setpoints_.push_back({body.id, quantity, value});
     if (!body.born || (is_nothing(quantity, value) && !is_new)) return;
     awaken(*body.rigid);
-    snapshot_is_fresh_ = records_are_fresh_ = false;
+    note(body.id);
     if (value && !heed(*body.rigid, quantity, *value)) ++unbearable_;
   };
   if (table_.size() < controls.body_quantities() / kMany) {
@@ -172,13 +178,14 @@ void Simulation::stop_pushing() {
   pushed_.clear();
 }
 
-/// By place in the table: how much setpoints will change the velocity of the body's surface beyond its predicted path,
-/// m/s. Empty if there are no setpoints.
-std::vector<double> Simulation::coming_pushes() const {
+/// Of bodies that setpoints concern, ascending by place: how much setpoints will change the velocity of the body's
+/// surface beyond its predicted path.
+std::vector<Simulation::PlacedPush> Simulation::coming_pushes() const {
+  std::vector<PlacedPush> pushes;
   const core::ControlLog& controls = timeline_.controls();
-  if (controls.empty()) return {};
+  if (controls.empty()) return pushes;
   const core::Step last = step_ + foreseen();
-  std::vector<ComingPush> coming(table_.size());
+  std::vector<std::pair<std::size_t, ComingPush>> coming;
   std::size_t near = 0;
   const auto is_here = [&](core::BodyId id) {
     const HostedBody* const body = table_.find(id, near);
@@ -186,13 +193,19 @@ std::vector<double> Simulation::coming_pushes() const {
   };
   controls.for_each_ahead(step_ + 1, last, is_here,
                           [&](core::BodyId, core::Quantity quantity, const core::Vec3& value) {
-                            coming[near].note(*table_[near].rigid, quantity, value, settings_.foresight_s);
+                            if (coming.empty() || coming.back().first != near) coming.emplace_back(near, ComingPush{});
+                            coming.back().second.note(*table_[near].rigid, quantity, value, settings_.foresight_s);
                           });
-  std::vector<double> pushes(table_.size());
-  for (std::size_t i = 0; i < pushes.size(); ++i) {
-    const double radius = coming[i].turn_rad_s > 0 ? bounding_radius(table_[i]) : 0;
-    pushes[i] = std::min(coming[i].linear_m_s, 2 * settings_.top_speed_m_s) +
-                std::min(radius * coming[i].turn_rad_s, 2 * settings_.top_speed_m_s);
+  std::ranges::stable_sort(coming, {}, &std::pair<std::size_t, ComingPush>::first);
+  for (std::size_t i = 0; i < coming.size(); ++i) {
+    if (i + 1 < coming.size() && coming[i + 1].first == coming[i].first) {
+      coming[i + 1].second.add(coming[i].second);
+      continue;
+    }
+    const auto& [place, push] = coming[i];
+    const double radius = push.turn_rad_s > 0 ? bounding_radius(table_[place]) : 0;
+    pushes.push_back({place, std::min(push.linear_m_s, 2 * settings_.top_speed_m_s) +
+                                 std::min(radius * push.turn_rad_s, 2 * settings_.top_speed_m_s)});
   }
   return pushes;
 }

@@ -75,11 +75,29 @@ void Simulation::wake_near(std::span<const Bounds> changing) {
   const auto is_near_any = [&](const Bounds& of_body) {
     return std::ranges::any_of(changing, [&](const Bounds& there) { return of_body.is_near(there); });
   };
-  for (HostedBody& body : table_.bodies()) {
-    if (!body.born || !is_near_any(bounds_of(*body.rigid->getBroadphaseProxy()))) continue;  // fast test first
-    if (is_near_any(bounds_of(*body.rigid))) awaken(*body.rigid);
+  find_near(changing);
+  for (const std::uint32_t place : near_) {
+    HostedBody& body = table_[place];
+    if (!is_near_any(bounds_of(*body.rigid))) continue;
+    awaken(*body.rigid);
+    note(body.id);
   }
-  snapshot_is_fresh_ = records_are_fresh_ = false;
+}
+
+/// Sets near_ to the places of the born bodies whose broadphase's boxes are near one of `places`; ascending.
+void Simulation::find_near(std::span<const Bounds> places) {
+  near_.clear();
+  for (const Bounds& bounds : places) world_.find_near(bounds, near_);
+  std::ranges::sort(near_);
+  const auto twins = std::ranges::unique(near_);
+  near_.erase(twins.begin(), twins.end());
+}
+
+/// Notes bodies near a place for the next snapshot.
+void Simulation::note_near(const Bounds& where) {
+  if (notes_.for_snapshot.all()) return;
+  find_near({&where, 1});
+  for (const std::uint32_t place : near_) notes_.for_snapshot.note(table_[place].id);
 }
 
 core::Pose Simulation::pose_of_static(std::uint32_t index, core::Step n) const {

@@ -1,5 +1,6 @@
 #include "physics/state_hash.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -35,29 +36,43 @@ std::array<std::uint64_t, kWords> words_of(const core::BodyRecord& body) {
   return words;
 }
 
-/// The sum of the hashes of `kBodies` bodies. Each word of a hash has to wait for the one before, so several hashes at
-/// once take little longer than one.
+/// Writes the hashes of `kBodies` bodies. Each word of a hash has to wait for the one before, so several hashes at once
+/// take little longer than one.
 template <std::size_t kBodies>
-std::uint64_t sum_of(const core::BodyRecord* bodies) {
+void write_hashes(const core::BodyRecord* bodies, std::uint64_t* hashes) {
   std::array<std::array<std::uint64_t, kWords>, kBodies> words;
   for (std::size_t i = 0; i < kBodies; ++i) words[i] = words_of(bodies[i]);
-  std::array<std::uint64_t, kBodies> hashes{};
+  std::array<std::uint64_t, kBodies> sums{};
   for (std::size_t word = 0; word < kWords; ++word) {
-    for (std::size_t i = 0; i < kBodies; ++i) hashes[i] = mixed(hashes[i] + 0x9e3779b97f4a7c15 + words[i][word]);
+    for (std::size_t i = 0; i < kBodies; ++i) sums[i] = mixed(sums[i] + 0x9e3779b97f4a7c15 + words[i][word]);
   }
-  return std::accumulate(hashes.begin(), hashes.end(), std::uint64_t{0});
+  std::copy(sums.begin(), sums.end(), hashes);
 }
+
+constexpr std::size_t kAtOnce = 4;
 
 }  // namespace
 
-std::uint64_t state_hash(const core::BodyRecord& body) { return sum_of<1>(&body); }
+std::uint64_t state_hash(const core::BodyRecord& body) {
+  std::uint64_t hash = 0;
+  write_hashes<1>(&body, &hash);
+  return hash;
+}
+
+void state_hashes(std::span<const core::BodyRecord> bodies, std::span<std::uint64_t> hashes) {
+  std::size_t i = 0;
+  for (; i + kAtOnce <= bodies.size(); i += kAtOnce) write_hashes<kAtOnce>(&bodies[i], &hashes[i]);
+  for (; i < bodies.size(); ++i) write_hashes<1>(&bodies[i], &hashes[i]);
+}
 
 std::uint64_t state_hash_sum(std::span<const core::BodyRecord> bodies) {
-  constexpr std::size_t kAtOnce = 4;
+  std::array<std::uint64_t, kAtOnce> hashes{};
   std::uint64_t sum = 0;
-  std::size_t i = 0;
-  for (; i + kAtOnce <= bodies.size(); i += kAtOnce) sum += sum_of<kAtOnce>(&bodies[i]);
-  for (; i < bodies.size(); ++i) sum += state_hash(bodies[i]);
+  for (std::size_t i = 0; i < bodies.size(); i += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, bodies.size() - i);
+    state_hashes(bodies.subspan(i, count), hashes);
+    sum = std::accumulate(hashes.begin(), hashes.begin() + static_cast<std::ptrdiff_t>(count), sum);
+  }
   return sum;
 }
 

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
+
+#include "core/body_state.h"
 
 namespace aurasim::physics {
 
@@ -34,6 +37,13 @@ class World : public btDiscreteDynamicsWorld {
 
   /// Forgets what this world remembers of earlier states. Its bodies, pairs and joints stay.
   virtual void forget_past() {}
+
+  /// True if only bodies of moved(), and their contacts, may have changed in the last step.
+  virtual bool knows_moved() const { return false; }
+  virtual std::span<btRigidBody* const> moved() const { return {}; }
+  /// Appends the pairs of bodies, by user index and a < b, that are in contact and of which one is among moved(). A
+  /// pair may come more than once.
+  virtual void add_contacts_of_moved(std::vector<core::Contact>&) const {}
 };
 
 std::unique_ptr<World> make_stepper(const WorldParts& parts, const Settings& settings);

@@ -1,6 +1,7 @@
 #include "physics/soft/world.h"
 
 #include <algorithm>
+#include <iterator>
 #include <span>
 #include <vector>
 
@@ -41,6 +42,7 @@ class SoftWorld final : public World {
   int stepSimulation(btScalar step_s, int, btScalar) override {
     islands_.call();
     team_.employ_for(islands_.awake().size());
+    moved_.assign(islands_.awake().begin(), islands_.awake().end());
     damp(step_s);
     bound();
     if (!islands_.are_at_rest()) m_broadphasePairCache->calculateOverlappingPairs(m_dispatcher1);
@@ -49,7 +51,11 @@ class SoftWorld final : public World {
                    getGravity());
     first_contacts_.report(contacts_.came(), *getPairCache());
     islands_.find(contacts_.touches(), contacts_.touches_of_sleepers(), contacts_.parted(), span_of(m_constraints));
-    if (islands_.has_woken_any()) contacts_.add_woken(*getPairCache());
+    if (islands_.has_woken_any()) {
+      contacts_.add_woken(*getPairCache());
+      std::ranges::copy_if(islands_.awake(), std::back_inserter(moved_),
+                           [this](const btRigidBody* body) { return islands_.is_woken(slot_of(*body)); });
+    }
     islands_.sort(contacts_.touches(), team_);
     core::Progress::mark();
     step_.solve(islands_.awake(), moving_statics_, islands_.touches(), contacts_, islands_.joints(), getGravity(),
@@ -60,6 +66,16 @@ class SoftWorld final : public World {
   }
 
   void forget_past() override { islands_.forget_past(); }
+
+  bool knows_moved() const override { return true; }
+  std::span<btRigidBody* const> moved() const override { return moved_; }
+  void add_contacts_of_moved(std::vector<core::Contact>& contacts) const override {
+    for (const SoftTouch& touch : contacts_.touches()) {
+      const auto [a, b] = std::minmax(touch.a, touch.b);
+      if (a < 0 || touch.manifold == nullptr || touch.manifold->getNumContacts() == 0) continue;
+      contacts.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
+    }
+  }
 
   void addRigidBody(btRigidBody* body) override {
     islands_.insert(*body);
@@ -138,6 +154,7 @@ class SoftWorld final : public World {
   ContactImpulses& contact_impulses_;
   SoftIslands islands_;
   SoftContacts contacts_;
+  std::vector<btRigidBody*> moved_;  ///< bodies that were awake at the start of the last step, or were woken in it
   const std::vector<btRigidBody*>& moving_statics_;
   SoftStep step_;
   soft::Team& team_;

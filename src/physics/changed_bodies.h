@@ -1,0 +1,63 @@
+// Bodies of a table that may have changed since a reader last looked at them.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "core/ids.h"
+#include "physics/body_table.h"
+
+namespace aurasim::physics {
+
+/// Named by id, because places in the table change when bodies come or go. Nothing is allocated once warm.
+class ChangedBodies {
+ public:
+  void note(core::BodyId id) {
+    if (all_) return;
+    ids_.push_back(id);
+    if (ids_.size() > 2 * known_ + kFew) sort_out();
+  }
+  /// Any body may have changed.
+  void note_all() {
+    clear();
+    all_ = true;
+  }
+  bool all() const { return all_; }
+  bool empty() const { return !all_ && ids_.empty(); }
+  void clear() {
+    ids_.clear();
+    known_ = 0;
+    all_ = false;
+  }
+
+  /// Calls `visit(body, place)` once for each noted body that is in the table, in ascending order.
+  template <class Visit>
+  void for_each(BodyTable& table, Visit&& visit) {
+    if (all_) {
+      for (std::size_t i = 0; i < table.size(); ++i) visit(table[i], i);
+      return;
+    }
+    sort_out();
+    std::size_t near = 0;
+    for (const core::BodyId id : ids_) {
+      if (HostedBody* const body = table.find(id, near)) visit(*body, near);
+    }
+  }
+
+ private:
+  static constexpr std::size_t kFew = 256;
+
+  void sort_out() {
+    std::ranges::sort(ids_);
+    const auto twins = std::ranges::unique(ids_);
+    ids_.erase(twins.begin(), twins.end());
+    known_ = ids_.size();
+  }
+
+  bool all_ = false;
+  std::vector<core::BodyId> ids_;
+  std::size_t known_ = 0;  ///< length of ids_ when it was last sorted
+};
+
+}  // namespace aurasim::physics

@@ -1,0 +1,187 @@
+// What a simulation shows of its bodies: snapshots and records. Only bodies that have changed are looked at anew.
+#include <algorithm>
+#include <iterator>
+#include <tuple>
+
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
+
+#include "core/progress.h"
+#include "physics/prefetch.h"
+#include "physics/simulation.h"
+
+namespace aurasim::physics {
+namespace {
+
+bool before(const core::Contact& x, const core::Contact& y) { return std::tie(x.a, x.b) < std::tie(y.a, y.b); }
+bool same(const core::Contact& x, const core::Contact& y) { return x.a == y.a && x.b == y.b; }
+
+}  // namespace
+
+/// A body's pose, velocity, activation state or block may have changed.
+void Simulation::note(core::BodyId id) {
+  notes_.note(id);
+  snapshot_is_fresh_ = records_are_fresh_ = false;
+}
+
+/// A body has come, or has been born.
+void Simulation::note_new(core::BodyId id) {
+  notes_.note_new(id);
+  snapshot_is_fresh_ = records_are_fresh_ = false;
+}
+
+void Simulation::note_all() {
+  notes_.note_all();
+  snapshot_is_fresh_ = records_are_fresh_ = false;
+}
+
+/// Takes bodies out of the table. They have left Bullet's world already.
+void Simulation::erase(const std::vector<bool>& leaving) {
+  for (std::size_t i = 0; i < leaving.size(); ++i) {
+    if (leaving[i]) hash_.drop(table_[i]);
+  }
+  table_.erase(leaving);
+  notes_.note_gone();
+  snapshot_is_fresh_ = records_are_fresh_ = false;
+}
+
+double Simulation::bounding_radius(const HostedBody& body) const {
+  return core::bounding_radius(scene_->shapes.at(scene_->prototypes.at(core::value_of(body.prototype)).shape).shape);
+}
+
+/// Upper bound of how much orders, setpoints and moving statics that are still to come will change the velocity of the
+/// body's surface beyond its predicted path, m/s.
+double Simulation::kick_ahead(const HostedBody& body, std::size_t place, std::span<const std::uint32_t> coming_statics,
+                              std::span<const PlacedPush> pushes, std::span<const Shove> shoves) const {
+  double kick = coming_kick(body, coming_statics);
+  const auto push = std::ranges::lower_bound(pushes, place, {}, &PlacedPush::place);
+  if (push != pushes.end() && push->place == place) kick += push->change_m_s;
+  return kick + coming_shove(body, shoves);
+}
+
+const core::Snapshot& Simulation::snapshot() {
+  if (snapshot_is_fresh_) return snapshot_;
+  ChangedBodies& changed = notes_.for_snapshot;
+  const std::vector<std::uint32_t> coming_statics = timeline_.statics_coming(step_);
+  if (!coming_statics.empty()) make_statics();
+  note_moving_statics();
+  const std::vector<Shove> shoves = coming_shoves();
+  const std::vector<PlacedPush> pushes = coming_pushes();
+  for (const core::BodyId id : kicked_) changed.note(id);
+  for (const core::Order& order : timeline_.coming(step_)) {
+    if (const std::optional<core::BodyId> id = core::body_of(order.action)) changed.note(*id);
+  }
+  for (const PlacedPush& push : pushes) changed.note(table_[push.place].id);
+  for (const std::uint32_t index : coming_statics) note_near(bounds_of(*statics_[index]));
+  for (const Shove& shove : shoves) note_near(shove.where);
+  if (!shoves.empty() && !changed.all()) {  // bodies that move may come to where a static pushes
+    for (const std::uint32_t place : snapshot_.changed) changed.note(table_[place].id);
+  }
+
+  snapshot_.step = step_;
+  snapshot_.goes_on = !changed.all() && snapshot_.number > 0;
+  ++snapshot_.number;
+  snapshot_.changed.clear();
+  snapshot_.changed_contacts.clear();
+  kicked_.clear();
+  if (!snapshot_.goes_on) {
+    snapshot_.born = snapshot_.awake = 0;
+    snapshot_.bodies.assign(table_.size(), {});
+  }
+  changed.for_each(table_, [&](const HostedBody& body, std::size_t place) {
+    const double kick = kick_ahead(body, place, coming_statics, pushes, shoves);
+    if (snapshot_.goes_on) snapshot_.changed.push_back(static_cast<std::uint32_t>(place));
+    if (kick > 0 || !body.born) kicked_.push_back(body.id);
+    show_state(body, place, kick);
+  });
+  changed.clear();
+  if (snapshot_.goes_on) {
+    list_changed_contacts();
+  } else {
+    list_contacts();
+    joints_.list_pairs(table_, snapshot_.joints);
+  }
+  steps_since_snapshot_ = 0;
+  moved_.clear();
+  moved_contacts_.clear();
+  snapshot_is_fresh_ = true;
+  return snapshot_;
+}
+
+/// Writes a body's state to its place in the snapshot, and counts it.
+void Simulation::show_state(const HostedBody& body, std::size_t place, double coming_kick_m_s) {
+  core::BodyState& state = snapshot_.bodies[place];
+  if (snapshot_.goes_on && body.born) {
+    --snapshot_.born;
+    snapshot_.awake -= state.awake ? 1 : 0;
+  }
+  state = body.state();
+  state.coming_kick_m_s = coming_kick_m_s;
+  state.awake = state.awake || coming_kick_m_s > 0;
+  if (!body.born) return;
+  ++snapshot_.born;
+  snapshot_.awake += state.awake ? 1 : 0;
+}
+
+/// Lists the contacts of the snapshot in order. Uses a counting sort, because manifolds come in no order and each body
+/// has several.
+void Simulation::list_contacts() {
+  unsorted_contacts_.clear();
+  contacts_before_.assign(table_.size() + 1, 0);
+  for_each_touching(world_.manifolds(), [this](const btPersistentManifold& manifold) {
+    const auto [a, b] = std::minmax({manifold.getBody0()->getUserIndex(), manifold.getBody1()->getUserIndex()});
+    if (is_static(a)) return;  // no test of distance: gaps of points never exceed kContactMargin
+    unsorted_contacts_.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
+    ++contacts_before_[static_cast<std::size_t>(a) + 1];
+  });
+  for (std::size_t i = 1; i < contacts_before_.size(); ++i) contacts_before_[i] += contacts_before_[i - 1];
+
+  std::vector<core::Contact>& contacts = snapshot_.contacts;
+  contacts.resize(unsorted_contacts_.size());
+  for (const core::Contact& contact : unsorted_contacts_) contacts[contacts_before_[contact.a]++] = contact;
+  std::size_t first = 0;
+  // each entry of contacts_before_ is now the end of its body's contacts
+  for (std::size_t a = 0; a < table_.size(); ++a) {
+    const auto of_body = std::span(contacts).subspan(first, contacts_before_[a] - first);
+    std::sort(of_body.begin(), of_body.end(), [](const auto& x, const auto& y) { return x.b < y.b; });
+    first = contacts_before_[a];
+  }
+  core::Progress::mark();
+  contacts.erase(std::unique(contacts.begin(), contacts.end(), same), contacts.end());
+}
+
+/// Replaces the contacts of the bodies that have moved. Those of other bodies are as they were.
+void Simulation::list_changed_contacts() {
+  std::vector<core::Contact>& changed = snapshot_.changed_contacts;
+  std::ranges::sort(moved_contacts_, before);
+  std::ranges::unique_copy(moved_contacts_, std::back_inserter(changed), same);
+  is_moved_.resize(table_.size());
+  for (const std::uint32_t place : moved_) is_moved_[place] = 1;
+  const auto has_moved = [this](const core::Contact& contact) { return is_moved_[contact.a] || is_moved_[contact.b]; };
+  unsorted_contacts_.clear();
+  std::ranges::copy_if(snapshot_.contacts, std::back_inserter(unsorted_contacts_), has_moved);
+  if (!std::ranges::equal(unsorted_contacts_, changed, same)) {
+    unsorted_contacts_.clear();
+    auto next = changed.begin();
+    for (const core::Contact& contact : snapshot_.contacts) {
+      if (has_moved(contact)) continue;
+      while (next != changed.end() && before(*next, contact)) unsorted_contacts_.push_back(*next++);
+      unsorted_contacts_.push_back(contact);
+    }
+    unsorted_contacts_.insert(unsorted_contacts_.end(), next, changed.end());
+    std::swap(snapshot_.contacts, unsorted_contacts_);
+  }
+  for (const std::uint32_t place : moved_) is_moved_[place] = 0;
+}
+
+std::span<const core::BodyRecord> Simulation::records() {
+  if (!records_are_fresh_) {
+    records_.clear();
+    for (const HostedBody& body : table_.bodies()) {
+      if (body.born) records_.push_back(body.record());
+    }
+    records_are_fresh_ = true;
+  }
+  return records_;
+}
+
+}  // namespace aurasim::physics

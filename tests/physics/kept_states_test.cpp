@@ -1,0 +1,133 @@
+// A world looks at changed bodies only for its snapshots and hashes. What it keeps of the others must be what they are.
+#include <algorithm>
+#include <random>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "physics/goes_back.h"
+
+namespace aurasim::physics::testing {
+namespace {
+
+class KeptStates : public ::testing::TestWithParam<std::tuple<Solver, bool>> {
+ protected:
+  static Settings settings() {
+    Settings settings;
+    settings.solver = std::get<0>(GetParam());
+    settings.continuous = std::get<1>(GetParam());
+    settings.block_m = 5;
+    return settings;
+  }
+};
+
+bool same_state(const core::BodyState& a, const core::BodyState& b) {
+  return a.id == b.id && a.epoch == b.epoch && a.prototype == b.prototype && a.awake == b.awake && a.birth == b.birth &&
+         a.pose.p_WB == b.pose.p_WB && a.pose.q_WB.coeffs() == b.pose.q_WB.coeffs() && a.v_WB == b.v_WB &&
+         a.w_WB == b.w_WB && a.coming_kick_m_s == b.coming_kick_m_s;
+}
+
+bool same_contacts(std::span<const core::Contact> a, std::span<const core::Contact> b) {
+  return std::ranges::equal(a, b, [](const auto& x, const auto& y) { return x.a == y.a && x.b == y.b; });
+}
+
+/// Compares what a world shows of its bodies with what it shows once it has looked at all of them.
+class Shown {
+ public:
+  explicit Shown(GoesBack& run) : run_(run), random_(run.random()) {}
+
+  void look() {
+    if (::testing::Test::HasFatalFailure() || random_() % 8 == 0) return;
+    RegionWorld& world = run_.world;
+    ASSERT_EQ(world.hash_sum(), hash_sum(world.records()));
+    expect_only_changes(world.snapshot());
+    shown_ = world.snapshot();
+    if (random_() % 6 == 0) look_at_all();
+  }
+
+  std::size_t kept = 0, compared = 0;
+
+ private:
+  /// Whatever the snapshot does not call changed is as it was.
+  void expect_only_changes(const core::Snapshot& now) {
+    if (!now.goes_on_from(shown_.number)) return;
+    ASSERT_TRUE(std::ranges::is_sorted(now.changed));
+    const auto has_changed = [&](std::uint32_t i) { return std::ranges::binary_search(now.changed, i); };
+    ASSERT_EQ(now.bodies.size(), shown_.bodies.size());
+    for (std::uint32_t i = 0; i < now.bodies.size(); ++i) {
+      if (has_changed(i)) continue;
+      ++kept;
+      ASSERT_TRUE(same_state(now.bodies[i], shown_.bodies[i])) << core::value_of(now.bodies[i].id);
+    }
+    const auto is_in = [](const core::Contact& contact, std::span<const core::Contact> contacts) {
+      return std::ranges::any_of(contacts, [&](const auto& c) { return c.a == contact.a && c.b == contact.b; });
+    };
+    for (const core::Contact& contact : now.contacts) {
+      if (is_in(contact, shown_.contacts)) continue;
+      ASSERT_TRUE(is_in(contact, now.changed_contacts) && (has_changed(contact.a) || has_changed(contact.b)));
+    }
+    for (const core::Contact& contact : shown_.contacts) {
+      if (is_in(contact, now.contacts)) continue;
+      ASSERT_TRUE(has_changed(contact.a) || has_changed(contact.b));
+    }
+    ASSERT_TRUE(same_contacts(now.joints, shown_.joints));
+  }
+
+  /// A body that comes and goes makes the world look at all others.
+  void look_at_all() {
+    const core::BodyRecord stranger = body(1'000'000, kBox, {1000, 1000, 0.5});
+    run_.world.add({&stranger, 1});
+    run_.world.release({&stranger.id, 1});
+    const core::Snapshot& all = run_.world.snapshot();
+    ASSERT_FALSE(all.goes_on);
+    ASSERT_TRUE(std::ranges::equal(shown_.bodies, all.bodies, same_state));
+    ASSERT_TRUE(same_contacts(shown_.contacts, all.contacts));
+    ASSERT_TRUE(same_contacts(shown_.joints, all.joints));
+    ASSERT_EQ(shown_.born, all.born);
+    ASSERT_EQ(shown_.awake, all.awake);
+    ASSERT_EQ(run_.world.hash_sum(), hash_sum(run_.world.records()));
+    ++compared;
+  }
+
+  GoesBack& run_;
+  std::mt19937_64 random_;
+  core::Snapshot shown_;
+};
+
+/// Whatever comes, leaves, is born, breaks, sleeps, wakes, is ordered, pushed, and goes back: what a world keeps of its
+/// bodies is what they are.
+TEST_P(KeptStates, AreWhatTheBodiesAre) {
+  std::size_t kept = 0, compared = 0;
+  for (int seed = 10; seed < (settings().looks_once() ? 16 : 11); ++seed) {
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
+    GoesBack run(settings(), seed);
+    Shown shown(run);
+    run.after_step = [&] { shown.look(); };
+    for (int round = 0; round < 5; ++round) {
+      run.run_on(5 + static_cast<int>(run.pick(60)));
+      const core::ClusterState then = run.world.peek_all();
+      const core::Step step = run.world.step_number();
+      run.run_astray(10 + static_cast<int>(run.pick(40)), round % 2 == 0 ? 0 : 250);
+      run.world.put_back(step, then);
+      shown.look();
+      if (HasFatalFailure()) return;
+    }
+    kept += shown.kept, compared += shown.compared;
+  }
+  EXPECT_GT(compared, 50U);
+  EXPECT_TRUE(kept > 5000 || !settings().looks_once()) << kept;
+}
+
+INSTANTIATE_TEST_SUITE_P(Solvers, KeptStates,
+                         ::testing::Combine(::testing::Values(Solver::kSequentialImpulse, Solver::kSoftStep),
+                                            ::testing::Bool()),
+                         [](const auto& info) {
+                           const bool is_soft = std::get<0>(info.param) == Solver::kSoftStep;
+                           return std::string(is_soft ? "SoftStep" : "SequentialImpulse") +
+                                  (std::get<1>(info.param) ? "Continuous" : "");
+                         });
+
+}  // namespace
+}  // namespace aurasim::physics::testing
