@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/aura.h"
-#include "core/near_index.h"
+#include "core/own_index.h"
 
 namespace aurasim::core {
 
@@ -20,6 +20,19 @@ class Clusters {
   /// every other region in reach of body i. The caller owns `paths`.
   void begin(std::span<const Path> paths, std::span<const std::uint64_t> regions, std::span<const Contact> contacts,
              std::span<const Contact> joints);
+
+  /// What differs from the state before.
+  struct Change {
+    std::span<const std::uint32_t> bodies;     ///< their paths may have changed; ascending
+    std::span<const Contact> contacts;         ///< all new contacts are among these
+    std::span<const std::uint32_t> in_reach;   ///< other regions are in reach of these bodies, and of no others
+  };
+  /// Like begin(), from the clusters of the state before, which had the same bodies and joints. `contacts` and `joints`
+  /// are in ascending order.
+  void go_on(std::span<const Path> paths, std::span<const std::uint64_t> regions, std::span<const Contact> contacts,
+             std::span<const Contact> joints, const Change& change);
+  /// Unites the clusters of two bodies, as if a joint held them together. Call before the first complete().
+  void hold_together(std::uint32_t a, std::uint32_t b);
 
   /// Notes that `regions` (bits) have bodies near body i. Returns false if that was known; otherwise the cluster has to
   /// be completed again.
@@ -45,10 +58,12 @@ class Clusters {
   template <class Visit>
   bool any_near(std::uint32_t i, int more_hops, Visit&& visit) const;
   bool is_complete(std::uint32_t i) const { return complete_[of(i)] != 0; }
+  /// At least one body of each complete cluster; some appear more than once.
+  std::span<const std::uint32_t> completed() const { return completed_; }
   std::size_t size(std::uint32_t i) const { return size_[of(i)]; }
   /// Pairs that joined clusters. The links of one cluster form a tree of its members.
-  std::span<const Contact> links() const { return links_; }
-  const NearIndex& near() const { return near_; }
+  std::vector<Contact> links() const;
+  const OwnIndex& near() const { return near_; }
 
   /// Calls `visit(index)` for each member of body i's cluster.
   template <class Visit>
@@ -67,18 +82,25 @@ class Clusters {
   void ask_members(std::uint32_t i);
   void set_regions(std::uint32_t cluster, std::uint64_t regions);
   void note_more_hops(std::uint32_t i, int hops);
+  void begin_step(std::span<const Path> paths);
+  void loosen(std::uint32_t i);
+  void unite_by(std::uint32_t i, std::span<const Contact> pairs);
 
   const Aura& aura_;
   std::span<const Path> paths_;
   int most_hops_ = 1;
   std::vector<std::uint32_t> grown_;
   std::vector<Range> link_ranges_;  ///< by hops
-  NearIndex near_;
+  OwnIndex near_;
   std::vector<std::uint32_t> label_, next_, size_;
   std::vector<std::uint64_t> regions_;
   std::vector<int> hops_;
   std::vector<std::uint8_t> complete_;
-  std::vector<Contact> links_;
+  std::vector<Contact> links_;            ///< by body that is no label any more: the pair by which it ceased to be one
+  std::vector<std::uint32_t> completed_;  ///< bodies passed to complete()
+  std::vector<std::uint32_t> altered_;    ///< a body of each cluster that is more than its contacts and joints make it
+  std::vector<std::uint8_t> is_loose_;    ///< by body, in go_on() only: its cluster is made anew
+  std::vector<std::uint32_t> loose_;
   std::vector<int> asked_hops_;  ///< by body: its hops at the last look_around(); 0: there was none
   std::vector<std::uint32_t> to_ask_;
   std::vector<std::uint32_t> linked_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <iterator>
 
 #include "core/horizon.h"
 #include "core/progress.h"
@@ -18,11 +19,6 @@ bool is_within(const Path& body, const Vec3& p, double radius_m, double distance
   return (body.pose.p_WB - p).squaredNorm() <= reach * reach;
 }
 
-/// The rectangle below the way from `p` to `q`.
-Rectangle box_of(const Vec3& p, const Vec3& q) {
-  return {std::min(p.x(), q.x()), std::min(p.y(), q.y()), std::max(p.x(), q.x()), std::max(p.y(), q.y())};
-}
-
 /// True if an own cluster that so far would go to `other` goes to `host` instead. False if `host` is not among `live`.
 bool pulls_from(RegionId host, RegionId other, std::span<const RegionId> live) {
   return host < other && std::binary_search(live.begin(), live.end(), host);
@@ -35,32 +31,64 @@ InterestMatching::InterestMatching(const Aura& aura, const Vicinity& vicinity, s
       has_narrow_regions_(vicinity.map.narrowest_m() < aura.listening_distance_m(0)),
       vicinity_(vicinity),
       together_(together),
-      clusters_(aura) {}
+      clusters_(aura),
+      own_(aura, vicinity) {}
 
 void InterestMatching::look(const Snapshot& snapshot, std::span<const Neighbour> neighbours,
                             std::span<const AuraRecord> ghosts) {
-  measure(snapshot);
+  own_.look(snapshot);
+  clear_marks();
   gather_foreign(snapshot, neighbours, ghosts);
   mark_regions();
   bring_together(snapshot);
-  clusters_.begin(paths_, regions_, snapshot.contacts, joined_);
+  form_clusters(snapshot);
   if (pulls_chain()) complete_near_boundaries();
   pair_up();
   widest_band_m_ = band(top_speed(), clusters_.most_hops() + kHomewardHops);
   judge();
 }
 
-void InterestMatching::measure(const Snapshot& snapshot) {
-  const auto n = snapshot.bodies.size();
-  ids_.resize(n);
-  paths_.resize(n);
-  announced_to_all_.assign(n, 0);
-  for (std::size_t i = 0; i < n; ++i) {
-    const BodyState& body = snapshot.bodies[i];
-    ids_[i] = body.id;
-    paths_[i] = path_of(body, snapshot.step, aura_.clearance());
-    paths_[i].speed_m_s = aura_.speed_of(body);
+/// Forgets what the last state has shown of bodies and clusters.
+void InterestMatching::clear_marks() {
+  if (!own_.goes_on()) {
+    const std::size_t n = own_.size();
+    regions_.assign(n, 0);
+    noticed_.assign(n, 0);
+    noticed_by_.assign(n, kNobodyListens);
+    announced_to_all_.assign(n, 0);
+    touched_.assign(n, 0);
+    expected_.assign(n, 0);
+    pulled_to_.assign(n, vicinity_.self);
+  } else {
+    for (const std::uint32_t i : near_) regions_[i] = 0;
+    for (const std::uint32_t i : marked_) {
+      noticed_[i] = announced_to_all_[i] = 0;
+      noticed_by_[i] = kNobodyListens;
+    }
+    for (const std::uint32_t cluster : judged_) expected_[cluster] = 0;
+    clear_judged();
   }
+  near_.clear();
+  marked_.clear();
+  judged_.clear();
+}
+
+/// Forgets which clusters an aura has met.
+void InterestMatching::clear_judged() {
+  for (const std::uint32_t cluster : judged_) {
+    touched_[cluster] = 0;
+    pulled_to_[cluster] = vicinity_.self;
+  }
+}
+
+void InterestMatching::form_clusters(const Snapshot& snapshot) {
+  if (own_.goes_on()) {
+    clusters_.go_on(own_.paths(), regions_, snapshot.contacts, snapshot.joints,
+                    {own_.changed(), snapshot.changed_contacts, near_});
+  } else {
+    clusters_.begin(own_.paths(), regions_, snapshot.contacts, snapshot.joints);
+  }
+  for (const Contact& pair : joined_) clusters_.hold_together(pair.a, pair.b);
 }
 
 void InterestMatching::gather_foreign(const Snapshot& snapshot, std::span<const Neighbour> neighbours,
@@ -76,16 +104,17 @@ void InterestMatching::gather_foreign(const Snapshot& snapshot, std::span<const 
     others_top_speed_ = std::max(others_top_speed_, silent ? aura_.rules().top_speed_m_s : neighbour.top_speed_m_s());
     others_top_radius_ = std::max(others_top_radius_, neighbour.top_radius_m());
     for (const AuraRecord& aura : neighbour.auras()) {
-      const std::optional<std::uint32_t> own = own_index(aura.id);
+      const std::optional<std::uint32_t> own = own_.find(aura.id);
       if (!own) {
         foreign_.add(aura, neighbour.applied(), snapshot.step, aura_);
       } else if ((aura.flags & kAuraGhost) == 0) {
         announced_to_all_[*own] = 1;  // two nodes host it, and the one with the lower epoch has to let go
+        marked_.push_back(*own);
       }
     }
   }
   for (const AuraRecord& ghost : ghosts) {
-    if (!own_index(ghost.id)) foreign_.add(ghost, ghost.stamp, snapshot.step, aura_);
+    if (!own_.find(ghost.id)) foreign_.add(ghost, ghost.stamp, snapshot.step, aura_);
   }
   foreign_.build();
 }
@@ -99,26 +128,22 @@ double InterestMatching::band(double speed_m_s, int hops) const {
 /// number. Where states are checked pulls do not chain, and these are the bodies that may have to go home.
 void InterestMatching::mark_regions() {
   const bool chains = pulls_chain();
-  const auto n = paths_.size();
-  regions_.assign(n, 0);
-  near_.clear();
-  double top_speed = NearIndex::kSlow;
-  for (std::size_t i = 0; i < n; ++i) {
-    top_speed = std::max(top_speed, paths_[i].speed_m_s);
-    others_top_radius_ = std::max(others_top_radius_, paths_[i].radius_m);
-  }
+  const double top_speed = std::max(NearIndex::kSlow, own_.top_speed());
+  others_top_radius_ = std::max(others_top_radius_, own_.top_radius());
   const double slow_band = band(NearIndex::kSlow, 1 + kHomewardHops);
   const double fast_band = band(top_speed, 1 + kHomewardHops);
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const bool slow = paths_[i].speed_m_s <= NearIndex::kSlow;
-    const Vec3& p = paths_[i].pose.p_WB;
-    if (vicinity_.deep_inside(p, (slow ? slow_band : fast_band) + paths_[i].radius_m)) continue;
+  own_.find_close(band(top_speed, horizon::kMostHops + kHomewardHops));
+  for (const std::uint32_t i : own_.close()) {
+    const Path& path = own_.path(i);
+    const bool slow = path.speed_m_s <= NearIndex::kSlow;
+    const Vec3& p = path.pose.p_WB;
+    if (vicinity_.deep_inside(p, (slow ? slow_band : fast_band) + path.radius_m)) continue;
     if (chains || outside(i)) near_.push_back(i);
     if (!chains) continue;
     int hops = 0;
     for (int found = 1; found > hops; found = std::popcount(regions_[i])) {
       hops = found;
-      regions_[i] = vicinity_.within(p, band(slow ? NearIndex::kSlow : top_speed, hops) + paths_[i].radius_m);
+      regions_[i] = vicinity_.within(p, band(slow ? NearIndex::kSlow : top_speed, hops) + path.radius_m);
     }
   }
 }
@@ -128,22 +153,16 @@ void InterestMatching::complete_near_boundaries() {
   for (const std::uint32_t i : expecting_) clusters_.complete(i);
 }
 
-std::optional<std::uint32_t> InterestMatching::own_index(BodyId id) const {
-  const auto found = std::lower_bound(ids_.begin(), ids_.end(), id);
-  if (found == ids_.end() || *found != id) return std::nullopt;
-  return static_cast<std::uint32_t>(found - ids_.begin());
-}
-
 /// Applies the pairs that a redo brings together. Two of our bodies are treated as if a joint held them. One of ours
 /// and a foreign one are treated as if their auras met.
 void InterestMatching::bring_together(const Snapshot& snapshot) {
-  joined_.assign(snapshot.joints.begin(), snapshot.joints.end());
+  joined_.clear();
   expecting_.clear();
   together_pairs_.clear();
   for (const TogetherPair& pair : together_) {
     if (pair.until < snapshot.step) continue;
-    const std::optional<std::uint32_t> a = own_index(pair.a);
-    const std::optional<std::uint32_t> b = own_index(pair.b);
+    const std::optional<std::uint32_t> a = own_.find(pair.a);
+    const std::optional<std::uint32_t> b = own_.find(pair.b);
     if (a && b) joined_.push_back({*a, *b});
     for (const auto& [own, other] : {std::pair(a, pair.b), std::pair(b, pair.a)}) {
       if (!own) continue;
@@ -157,9 +176,10 @@ void InterestMatching::bring_together(const Snapshot& snapshot) {
 /// Finds foreign auras and our bodies near them. A cluster that is completed here may turn out to have more hops and
 /// then reach further. So bodies that have grown are looked at again until none grows.
 void InterestMatching::pair_up() {
-  noticed_.assign(paths_.size(), 0);
-  noticed_by_.assign(paths_.size(), kNobodyListens);
-  for (const std::uint32_t i : expecting_) noticed_[i] = announced_to_all_[i] = 1;
+  for (const std::uint32_t i : expecting_) {
+    noticed_[i] = announced_to_all_[i] = 1;
+    marked_.push_back(i);
+  }
   clusters_.take_grown(grown_);  // discard: all bodies are looked at below with their present speeds
   for (const ForeignBlock& block : foreign_.blocks()) {
     Progress::mark();
@@ -167,11 +187,21 @@ void InterestMatching::pair_up() {
   }
   take_news();
   notice_grown();
+  note_near_others();
   pairs_.clear();
   for (const ForeignBlock& block : foreign_.blocks()) {
     Progress::mark();
     find_pairs(block);
   }
+}
+
+/// Call once all marks are set.
+void InterestMatching::note_near_others() {
+  std::ranges::sort(marked_);
+  const auto twins = std::ranges::unique(marked_);
+  marked_.erase(twins.begin(), twins.end());
+  near_others_.clear();
+  std::ranges::set_union(own_.close(), marked_, std::back_inserter(near_others_));
 }
 
 /// Completes the clusters of bodies that foreign ones are near to, and notes their regions. Where pulls do not chain,
@@ -233,12 +263,12 @@ void InterestMatching::notice(const ForeignBlock& block) {
   candidates_.clear();
   const auto range_at = [this](double speed_m_s) { return widest_range(speed_m_s); };
   clusters_.near().for_each_near(block.lo, block.hi, range_at, [&](std::uint32_t i) {
-    if (!knows(i)) candidates_.push_back(candidate(i, paths_[i].speed_m_s));
+    if (!knows(i)) candidates_.push_back(candidate(i, own_.path(i).speed_m_s));
   });
   for (std::size_t k = 0; k < block.bodies.size(); ++k) {
     std::erase_if(candidates_, [&](const Candidate& c) {
       if (!is_in_range(block, k, c) ||
-          !aura_.may_approach(foreign_[block.bodies[k]].path, paths_[c.own], static_cast<int>(c.hops))) {
+          !aura_.may_approach(foreign_[block.bodies[k]].path, own_.path(c.own), static_cast<int>(c.hops))) {
         return false;
       }
       if (!knows(c.own)) note(c.own, block.host);
@@ -250,6 +280,7 @@ void InterestMatching::notice(const ForeignBlock& block) {
 void InterestMatching::note(std::uint32_t own, RegionId host) {
   const Audience region = vicinity_.bit_of(host);
   noticed_[own] = 1;
+  marked_.push_back(own);
   noticed_by_[own] |= region;
   if (region == kNobodyListens) announced_to_all_[own] = 1;
   news_.push_back({own, region});
@@ -257,13 +288,13 @@ void InterestMatching::note(std::uint32_t own, RegionId host) {
 
 InterestMatching::Candidate InterestMatching::candidate(std::uint32_t own, double speed_m_s) const {
   const auto hops = static_cast<std::size_t>(clusters_.hops(own) + kHomewardHops);
-  return {paths_[own].pose.p_WB, paths_[own].radius_m, speed_m_s, hops, own};
+  return {own_.path(own).pose.p_WB, own_.path(own).radius_m, speed_m_s, hops, own};
 }
 
 /// Calls `visit(index)` for at least every foreign body that notices our body `own`.
 template <class Visit>
 void InterestMatching::for_each_foreign_near(std::uint32_t own, Visit&& visit) const {
-  const Path& path = paths_[own];
+  const Path& path = own_.path(own);
   const int hops = clusters_.hops(own) + kHomewardHops;
   const auto range = [&](double speed_m_s) {
     return aura_.notice(speed_m_s, foreign_.oldest_steps(), hops).at(path.speed_m_s) + foreign_.most_blur_m();
@@ -273,7 +304,7 @@ void InterestMatching::for_each_foreign_near(std::uint32_t own, Visit&& visit) c
 
 /// Looks again for foreign bodies near body `own`, which has more hops than before.
 void InterestMatching::notice_again(std::uint32_t own) {
-  const Path& path = paths_[own];
+  const Path& path = own_.path(own);
   const int hops = clusters_.hops(own) + kHomewardHops;
   for_each_foreign_near(own, [&](std::uint32_t f) {
     const Foreign& foreign = foreign_[f];
@@ -295,7 +326,7 @@ void InterestMatching::find_pairs(const ForeignBlock& block) {
   candidates_.clear();
   const auto range_at = [&](double speed_m_s) { return widest_range(drift * speed_m_s); };
   clusters_.near().for_each_near(block.lo, block.hi, range_at, [&](std::uint32_t i) {
-    candidates_.push_back(candidate(i, aura_.drift_m_s(paths_[i])));
+    candidates_.push_back(candidate(i, aura_.drift_m_s(own_.path(i))));
   });
   for (std::size_t k = 0; k < block.bodies.size(); ++k) {
     for (const Candidate& c : candidates_) {
@@ -305,9 +336,6 @@ void InterestMatching::find_pairs(const ForeignBlock& block) {
 }
 
 void InterestMatching::judge() {
-  touched_.assign(paths_.size(), 0);
-  expected_.assign(paths_.size(), 0);
-  pulled_to_.assign(paths_.size(), vicinity_.self);
   hits_.clear();
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     Progress::mark_now_and_then(i);
@@ -326,8 +354,7 @@ void InterestMatching::judge() {
 void InterestMatching::complete_hit_clusters() {
   for (const Hit& hit : hits_) clusters_.complete(hit.own);
   complete_near_boundaries();
-  touched_.assign(paths_.size(), 0);
-  pulled_to_.assign(paths_.size(), vicinity_.self);
+  clear_judged();
   for (const Hit& each : hits_) hit(each.own, each.host);
 }
 
@@ -336,6 +363,7 @@ void InterestMatching::complete_hit_clusters() {
 void InterestMatching::hit(std::uint32_t own, RegionId host) {
   const std::uint32_t cluster = clusters_.of(own);
   touched_[cluster] = 1;
+  judged_.push_back(cluster);
   if (pulls_from(host, pulled_to_[cluster], live_)) pulled_to_[cluster] = host;
 }
 
@@ -345,7 +373,7 @@ bool InterestMatching::meets(const Foreign& foreign, const Path& own, int hops) 
 
 void InterestMatching::judge(const Pair& pair) {
   const Foreign& f = foreign_[pair.foreign];
-  const Path& own = paths_[pair.own];
+  const Path& own = own_.path(pair.own);
   const std::uint32_t cluster = clusters_.of(pair.own);
   const int hops = clusters_.hops(pair.own);
   const bool pulls = pulls_from(f.host, pulled_to_[cluster], live_);
@@ -358,37 +386,9 @@ void InterestMatching::judge_expected(const Pair& pair) {
   const std::uint32_t cluster = clusters_.of(pair.own);
   if (!outside(pair.own) || touched_[cluster] || expected_[cluster]) return;
   const int hops = clusters_.hops(pair.own) + kHomewardHops;
-  expected_[cluster] = meets(foreign_[pair.foreign], paths_[pair.own], hops) ? 1 : 0;
-}
-
-Audience InterestMatching::audience(std::uint32_t i) const {
-  const Vec3& p = paths_[i].pose.p_WB;
-  if (announced_to_all_[i] || !vicinity_.home().contains(p.x(), p.y())) return kAllListeners;
-  const Audience near = noticed_by_[i] | owners_in_zone(i);
-  return near != kNobodyListens && has_narrow_regions_ ? kAllListeners : near;
-}
-
-/// The owners of territory within the zone of body i.
-Audience InterestMatching::owners_in_zone(std::uint32_t i) const {
-  const Path& path = paths_[i];
-  const Vec3& p = path.pose.p_WB;
-  if (vicinity_.deep_inside(p, widest_band_m_ + path.radius_m)) return kNobodyListens;
-  const int hops = clusters_.hops(i) + kHomewardHops;
-  if (!aura_.rules().redo || !aura_.predicts()) {
-    return vicinity_.within(p, band(path.speed_m_s, hops) + path.radius_m);
-  }
-  // Where states are checked the body is believed to keep to its path, and to leave it by U times its speed.
-  const Vec3 ahead = p + path.v_WB * (horizon::announcing(aura_.rules().lookahead, hops) * aura_.rules().step_s);
-  const double u = aura_.rules().uncertainty;
-  const double zone =
-      aura_.zone(u / (1 + u) * path.speed_m_s, hops, std::max(others_top_speed_, path.speed_m_s), others_top_radius_);
-  return vicinity_.within(box_of(p, ahead), zone + path.radius_m);
-}
-
-bool InterestMatching::outside(std::uint32_t i) const {
-  const Vec3& p = paths_[i].pose.p_WB;
-  if (!aura_.warns()) return !vicinity_.home().contains(p.x(), p.y());
-  return vicinity_.home().distance(p.x(), p.y()) > paths_[i].radius_m;
+  if (!meets(foreign_[pair.foreign], own_.path(pair.own), hops)) return;
+  expected_[cluster] = 1;
+  judged_.push_back(cluster);
 }
 
 }  // namespace aurasim::core

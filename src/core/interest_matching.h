@@ -1,5 +1,6 @@
 // The matching half of the protocol (interest matching). Finds which of our bodies belong together, which foreign auras
-// they meet, and which have to be announced. Looks at one state, and keeps nothing from state to state but its buffers.
+// they meet, and which have to be announced. What it finds follows from one state; where a snapshot names what has
+// changed since the one before, it looks at nothing else but what is near other regions or foreign bodies.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +13,7 @@
 #include "core/foreign.h"
 #include "core/messages.h"
 #include "core/neighbour.h"
+#include "core/own_bodies.h"
 #include "core/redo.h"
 #include "core/vicinity.h"
 
@@ -33,8 +35,11 @@ class InterestMatching {
   void look(const Snapshot& snapshot, std::span<const Neighbour> neighbours, std::span<const AuraRecord> ghosts);
 
   const Clusters& clusters() const { return clusters_; }
-  const Path& path(std::uint32_t i) const { return paths_[i]; }
-  BodyId id(std::uint32_t i) const { return ids_[i]; }
+  const OwnBodies& own() const { return own_; }
+  const Path& path(std::uint32_t i) const { return own_.path(i); }
+  BodyId id(std::uint32_t i) const { return own_.id(i); }
+  /// Bodies that may have an audience, or be outside; ascending. All others have none and are inside.
+  std::span<const std::uint32_t> near_others() const { return near_others_; }
 
   /// The regions that have to know of body i, because it is near their territory or near a body that they host. All
   /// listeners if the body's centre is outside our region: they may host bodies out there that we do not know.
@@ -51,14 +56,16 @@ class InterestMatching {
 
   /// A foreign aura is near body i.
   bool noticed(std::uint32_t i) const { return noticed_[i] != 0; }
+  /// All noticed bodies, and perhaps some others; ascending.
+  std::span<const std::uint32_t> marked() const { return marked_; }
   std::span<const Pair> pairs() const { return pairs_; }
   const Foreign& foreign(std::uint32_t i) const { return foreign_[i]; }
 
   const ForeignBodies& all_foreign() const { return foreign_; }
   double others_top_speed() const { return others_top_speed_; }
   std::size_t foreign_auras() const { return foreign_.size(); }
-  double top_speed() const { return clusters_.near().top_speed(); }
-  double top_radius() const { return clusters_.near().top_radius(); }
+  double top_speed() const { return own_.top_speed(); }
+  double top_radius() const { return own_.top_radius(); }
 
  private:
   /// One of our bodies, with what a search for foreign bodies near it needs.
@@ -70,7 +77,10 @@ class InterestMatching {
     std::uint32_t own;
   };
 
-  void measure(const Snapshot& snapshot);
+  void clear_marks();
+  void clear_judged();
+  void note_near_others();
+  void form_clusters(const Snapshot& snapshot);
   void gather_foreign(const Snapshot& snapshot, std::span<const Neighbour> neighbours,
                       std::span<const AuraRecord> ghosts);
   void mark_regions();
@@ -98,7 +108,6 @@ class InterestMatching {
   bool pulls_chain() const { return aura_.rules().pulls_chain(); }
   Audience owners_in_zone(std::uint32_t i) const;
   void bring_together(const Snapshot& snapshot);
-  std::optional<std::uint32_t> own_index(BodyId id) const;
   bool meets(const Foreign& foreign, const Path& own, int hops) const;
   double band(double speed_m_s, int hops) const;
 
@@ -109,12 +118,12 @@ class InterestMatching {
   const bool has_narrow_regions_;
   const Vicinity& vicinity_;
   std::span<const TogetherPair> together_;
-  std::vector<Contact> joined_;           ///< our pairs that a joint or a redo holds together
+  std::vector<Contact> joined_;           ///< our pairs that a redo holds together
   std::vector<std::uint32_t> expecting_;  ///< our bodies whose partner in a together_ pair is to come to the same host
   std::vector<Pair> together_pairs_;      ///< the together_ pairs of a foreign body and one of ours
   Clusters clusters_;
-  std::vector<BodyId> ids_;
-  std::vector<Path> paths_;
+  OwnBodies own_;
+  std::vector<std::uint32_t> near_others_;
   std::vector<std::uint64_t> regions_;
   std::vector<RegionId> live_;  ///< neighbours that can take a cluster, ascending
   ForeignBodies foreign_;
@@ -132,6 +141,7 @@ class InterestMatching {
   std::vector<std::uint8_t> noticed_;
   std::vector<Audience> noticed_by_;  ///< hosts of the foreign bodies near each of ours
   std::vector<std::uint8_t> announced_to_all_;
+  std::vector<std::uint32_t> marked_;  ///< bodies of which one of the three is set
   struct Hit {
     std::uint32_t own;
     RegionId host;
@@ -140,6 +150,7 @@ class InterestMatching {
   std::vector<std::uint8_t> touched_;   ///< by cluster
   std::vector<std::uint8_t> expected_;  ///< by cluster
   std::vector<RegionId> pulled_to_;     ///< by cluster
+  std::vector<std::uint32_t> judged_;   ///< clusters of which one of the three is set
   double widest_band_m_ = 0;            ///< beyond it, no body is near another region
   double others_top_speed_ = 0;
   double others_top_radius_ = 0;

@@ -22,6 +22,8 @@ class NearIndex {
 
   /// Indexes `paths` by their speed_m_s.
   void build(std::span<const Path> paths);
+  /// The same for those of the paths that `some` names.
+  void build(std::span<const Path> paths, std::span<const std::uint32_t> some);
 
   double top_speed() const { return top_speed_; }
   double top_radius() const { return top_radius_; }
@@ -59,8 +61,12 @@ class NearIndex {
     return gear;
   }
 
+  void begin(double sum_of_radii_m, std::size_t count);
+  void add(std::uint32_t index, const Path& path);
+
   std::array<Gear, kFastestOfGear.size()> gears_;
   std::vector<std::uint32_t> always_;  ///< large bodies, visited in every query
+  double large_radius_ = 0;            ///< bodies with a larger radius are large
   double small_radius_ = 0;            ///< largest radius of the bodies in the grids
   double top_speed_ = 0;
   double top_radius_ = 0;

@@ -1,6 +1,7 @@
 #include "core/projection.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "core/aura_record.h"
@@ -17,6 +18,9 @@ bool has_news(const AuraRecord& published, const AuraRecord& now) {
          published.epoch != now.epoch || published.pose.p_WB != now.pose.p_WB || published.audience != now.audience;
 }
 
+/// Is the body near the border or outside, or has been in the state before?
+bool is_busy(const Track& track) { return track.phase != Phase::kHostRegion || track.projected(); }
+
 /// Published auras are scattered in memory and no longer cached after physics has run. Without prefetch, waiting for
 /// them was most of the cost.
 constexpr std::size_t kPrefetchDistance = 8;
@@ -24,6 +28,9 @@ constexpr std::size_t kPrefetchDistance = 8;
 }  // namespace
 
 void Projection::follow(const Snapshot& snapshot) {
+  goes_on_ = snapshot.goes_on_from(seen_);
+  seen_ = snapshot.number;
+  if (goes_on_) return;
   const auto same = [](const Track& track, const BodyState& body) {
     return track.id == body.id && track.epoch == body.epoch;
   };
@@ -95,25 +102,44 @@ void Projection::publish(Track& track, const AuraRecord& aura, AuraBatch& batch,
 }
 
 void Projection::classify(const Snapshot& snapshot, const InterestMatching& matching) {
-  for (std::uint32_t i = 0; i < snapshot.bodies.size(); ++i) {
-    Track& track = tracks_[i];
-    track.audience = matching.audience(i);
-    move(track, matching.outside(i)                ? PhaseEvent::kOutside
-                : track.audience != kNobodyListens ? PhaseEvent::kNearBoundary
-                                                   : PhaseEvent::kFarFromBoundary);
+  if (goes_on_) {
+    note_busy(matching);
+    for (const std::uint32_t i : busy_) classify(i, matching);
+    return;
   }
+  busy_.clear();
+  for (std::uint32_t i = 0; i < snapshot.bodies.size(); ++i) {
+    classify(i, matching);
+    if (is_busy(tracks_[i])) busy_.push_back(i);
+  }
+}
+
+void Projection::classify(std::uint32_t i, const InterestMatching& matching) {
+  Track& track = tracks_[i];
+  track.audience = matching.audience(i);
+  move(track, matching.outside(i)                ? PhaseEvent::kOutside
+              : track.audience != kNobodyListens ? PhaseEvent::kNearBoundary
+                                                 : PhaseEvent::kFarFromBoundary);
+}
+
+/// Adds the bodies that are near others now, and drops those that no longer project.
+void Projection::note_busy(const InterestMatching& matching) {
+  std::swap(busy_, were_busy_);
+  busy_.clear();
+  std::erase_if(were_busy_, [this](std::uint32_t i) { return !is_busy(tracks_[i]); });
+  std::ranges::set_union(were_busy_, matching.near_others(), std::back_inserter(busy_));
 }
 
 void Projection::publish(const Snapshot& snapshot, AuraBatch& batch, ViolationLog& violations, bool full) {
   projecting_ = 0;
-  for (std::uint32_t i = 0; i < tracks_.size(); ++i) {
-    if (i + kPrefetchDistance < tracks_.size() && tracks_[i + kPrefetchDistance].projected()) {
-      prefetch(tracks_[i + kPrefetchDistance].published.get(), sizeof(Track::Published));
+  check_speeds(snapshot, violations);
+  for (std::size_t k = 0; k < busy_.size(); ++k) {
+    if (k + kPrefetchDistance < busy_.size() && tracks_[busy_[k + kPrefetchDistance]].projected()) {
+      prefetch(tracks_[busy_[k + kPrefetchDistance]].published.get(), sizeof(Track::Published));
     }
-    Track& track = tracks_[i];
+    Track& track = tracks_[busy_[k]];
     if (track.phase == Phase::kSent) continue;
-    const BodyState& body = snapshot.bodies[i];
-    check_speed(track, body, snapshot.step, violations);
+    const BodyState& body = snapshot.bodies[busy_[k]];
     if (projects(track.phase) && aura_.warns()) {
       ++projecting_;
       check_promise(track, body, snapshot.step, violations);
@@ -196,6 +222,18 @@ void Projection::check_promise(Track& track, const BodyState& body, Step now, Vi
   }
   if (off > allowed) violations.add({ViolationKind::kPromise, now, vicinity_.self, body.id, off, allowed});
   track.published->promise = track.published->newest;
+}
+
+/// Bodies that have not changed are asleep, so they are not too fast.
+void Projection::check_speeds(const Snapshot& snapshot, ViolationLog& violations) {
+  const auto check = [&](std::uint32_t i) {
+    if (tracks_[i].phase != Phase::kSent) check_speed(tracks_[i], snapshot.bodies[i], snapshot.step, violations);
+  };
+  if (goes_on_) {
+    for (const std::uint32_t i : snapshot.changed) check(i);
+  } else {
+    for (std::uint32_t i = 0; i < tracks_.size(); ++i) check(i);
+  }
 }
 
 void Projection::check_speed(Track& track, const BodyState& body, Step now, ViolationLog& violations) {

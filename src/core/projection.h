@@ -52,7 +52,8 @@ class Projection {
   /// The track of a body; null if it was not hosted here in the last state.
   const Track* find(BodyId id) const;
 
-  /// Moves every body to the phase that follows from its place, and decides to whom its aura goes.
+  /// Moves each body to the phase that follows from its place, and decides to whom its aura goes. Bodies that are deep
+  /// inside, as they were before, are not looked at.
   void classify(const Snapshot& snapshot, const InterestMatching& matching);
 
   /// Writes creations, updates and deletions of the bodies that stay into `batch`; `full`: writes all projected auras,
@@ -70,11 +71,14 @@ class Projection {
   void move(Track& track, PhaseEvent event);
   void publish(Track& track, const AuraRecord& aura, AuraBatch& batch, bool full);
   void note_gone(const Track& track);
+  void classify(std::uint32_t i, const InterestMatching& matching);
+  void note_busy(const InterestMatching& matching);
   void take_back_gone(AuraBatch& batch);
   void keep_newest_ghosts();
   void expire_ghosts(const Snapshot& snapshot, AuraBatch& batch);
   AuraRecord describe(const BodyState& body, Audience audience, Step stamp) const;
   void check_promise(Track& track, const BodyState& body, Step now, ViolationLog& violations);
+  void check_speeds(const Snapshot& snapshot, ViolationLog& violations);
   void check_speed(Track& track, const BodyState& body, Step now, ViolationLog& violations);
   void check_span(Track& track, const BodyState& body, Step now, ViolationLog& violations);
 
@@ -82,6 +86,10 @@ class Projection {
   const Vicinity& vicinity_;
   std::vector<Track> tracks_, before_;  ///< ascending id
   std::vector<BodyId> ids_;             ///< ids of tracks_, in one array for fast look-up
+  std::uint64_t seen_ = 0;               ///< number of the last snapshot
+  bool goes_on_ = false;                 ///< the last snapshot has named what differs from the one before
+  std::vector<std::uint32_t> busy_;      ///< bodies that may project, or have; ascending
+  std::vector<std::uint32_t> were_busy_;
   std::vector<AuraRecord> ghosts_;
   std::vector<BodyId> gone_;  ///< projected in the last state, no longer hosted, and not handed over
   std::size_t projecting_ = 0;

@@ -190,6 +190,7 @@ class Protocol {
   void let_go(BodyId id);
   void apply_late(Order& order, Step n);
   void decide(const Snapshot& snapshot);
+  void list_complete_clusters();
   void decide_for_cluster(std::uint32_t i, const Snapshot& snapshot);
   void send_home(const Snapshot& snapshot);
   void decide_naively(std::uint32_t i, const Snapshot& snapshot);
@@ -227,9 +228,13 @@ class Protocol {
   Step checked_by_all_ = -1;
   Changes changes_;
   std::vector<Departure> departing_;
-  std::vector<std::uint8_t> decided_;
+  struct CompleteCluster {
+    std::uint32_t first;    ///< index of its first body
+    std::uint32_t cluster;  ///< its label
+  };
+  std::vector<CompleteCluster> complete_;
   std::vector<std::uint32_t> homing_;    ///< a body of each cluster that is to go home
-  std::vector<std::uint8_t> goes_home_;  ///< by cluster
+  std::vector<std::uint8_t> goes_home_;  ///< by cluster; all 0 between two states
   Outbox outbox_;
   ProtocolCounters counters_;
   ViolationLog violations_;

@@ -9,23 +9,38 @@
 namespace aurasim::core {
 
 void Protocol::decide(const Snapshot& snapshot) {
-  decided_.assign(snapshot.bodies.size(), 0);
-  goes_home_.assign(snapshot.bodies.size(), 0);
+  goes_home_.resize(snapshot.bodies.size());
   homing_.clear();
   largest_cluster_ = 0;
-  for (std::uint32_t i = 0; i < snapshot.bodies.size(); ++i) {
-    if (!aura_->warns()) {
-      decide_naively(i, snapshot);
-      continue;
-    }
-    const std::uint32_t cluster = matching_.clusters().of(i);
-    if (!matching_.clusters().is_complete(i) || decided_[cluster]) continue;
-    decided_[cluster] = 1;
+  if (!aura_->warns()) {
+    for (std::uint32_t i = 0; i < snapshot.bodies.size(); ++i) decide_naively(i, snapshot);
+    return;
+  }
+  list_complete_clusters();
+  for (const auto& [first, cluster] : complete_) {
     Progress::mark();
-    largest_cluster_ = std::max(largest_cluster_, matching_.clusters().size(i));
-    decide_for_cluster(i, snapshot);
+    largest_cluster_ = std::max(largest_cluster_, matching_.clusters().size(first));
+    decide_for_cluster(first, snapshot);
   }
   send_home(snapshot);
+  for (const auto& [first, cluster] : complete_) goes_home_[cluster] = 0;
+}
+
+/// Lists the complete clusters in ascending order of their first bodies.
+void Protocol::list_complete_clusters() {
+  const Clusters& clusters = matching_.clusters();
+  complete_.clear();
+  for (const std::uint32_t i : clusters.completed()) {
+    if (clusters.is_complete(i)) complete_.push_back({0, clusters.of(i)});
+  }
+  std::ranges::sort(complete_, {}, &CompleteCluster::cluster);
+  const auto twins = std::ranges::unique(complete_, {}, &CompleteCluster::cluster);
+  complete_.erase(twins.begin(), twins.end());
+  for (CompleteCluster& one : complete_) {
+    one.first = one.cluster;
+    clusters.for_each_member(one.cluster, [&](std::uint32_t j) { one.first = std::min(one.first, j); });
+  }
+  std::ranges::sort(complete_, {}, &CompleteCluster::first);
 }
 
 /// Decides AC before BT, because a cluster that an aura has met is never an island.

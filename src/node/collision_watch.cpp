@@ -171,7 +171,7 @@ void CollisionWatch::remember(const core::Snapshot& snapshot, const core::Intere
     state.bodies.clear();
     states_.pop_front();
   }
-  for (std::uint32_t i = 0; i < snapshot.bodies.size(); ++i) {
+  for (const std::uint32_t i : matching.marked()) {
     const bool born = snapshot.bodies[i].birth <= snapshot.step;
     if (born && matching.noticed(i)) state.bodies.push_back({snapshot.bodies[i].id, snapshot.bodies[i].pose});
   }

@@ -8,6 +8,14 @@ namespace aurasim::node {
 /// Compares the bodies of this state with those of the state before. Both lists are in ascending order and share most
 /// bodies.
 void Touches::note(const core::Snapshot& snapshot) {
+  const bool goes_on = snapshot.goes_on_from(seen_);
+  seen_ = snapshot.number;
+  if (goes_on) {
+    for (const core::Contact& contact : snapshot.changed_contacts) {
+      now_[contact.a].touched = now_[contact.b].touched = true;
+    }
+    return;
+  }
   std::swap(now_, before_);
   now_.clear();
   auto before = before_.begin();

@@ -2,6 +2,7 @@
 // thrashing.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "core/body_state.h"
@@ -20,7 +21,8 @@ class Touches {
     core::BodyId id{};
     bool touched = false;
   };
-  std::vector<Touch> now_, before_;  ///< ascending id: of the last state, and of the one before it
+  std::uint64_t seen_ = 0;            ///< number of the last snapshot
+  std::vector<Touch> now_, before_;  ///< ascending id: of the last state, and of one before it
 };
 
 }  // namespace aurasim::node

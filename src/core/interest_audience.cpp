@@ -1,0 +1,47 @@
+// To whom the aura of a body goes (docs/design.md, "To whom an aura goes").
+#include <algorithm>
+
+#include "core/horizon.h"
+#include "core/interest_matching.h"
+
+namespace aurasim::core {
+namespace {
+
+/// The rectangle below the way from `p` to `q`.
+Rectangle box_of(const Vec3& p, const Vec3& q) {
+  return {std::min(p.x(), q.x()), std::min(p.y(), q.y()), std::max(p.x(), q.x()), std::max(p.y(), q.y())};
+}
+
+}  // namespace
+
+Audience InterestMatching::audience(std::uint32_t i) const {
+  const Vec3& p = own_.path(i).pose.p_WB;
+  if (announced_to_all_[i] || !vicinity_.home().contains(p.x(), p.y())) return kAllListeners;
+  const Audience near = noticed_by_[i] | owners_in_zone(i);
+  return near != kNobodyListens && has_narrow_regions_ ? kAllListeners : near;
+}
+
+/// The owners of territory within the zone of body i.
+Audience InterestMatching::owners_in_zone(std::uint32_t i) const {
+  const Path& path = own_.path(i);
+  const Vec3& p = path.pose.p_WB;
+  if (vicinity_.deep_inside(p, widest_band_m_ + path.radius_m)) return kNobodyListens;
+  const int hops = clusters_.hops(i) + horizon::kHomewardHops;
+  if (!aura_.rules().redo || !aura_.predicts()) {
+    return vicinity_.within(p, band(path.speed_m_s, hops) + path.radius_m);
+  }
+  // Where states are checked the body is believed to keep to its path, and to leave it by U times its speed.
+  const Vec3 ahead = p + path.v_WB * (horizon::announcing(aura_.rules().lookahead, hops) * aura_.rules().step_s);
+  const double u = aura_.rules().uncertainty;
+  const double zone =
+      aura_.zone(u / (1 + u) * path.speed_m_s, hops, std::max(others_top_speed_, path.speed_m_s), others_top_radius_);
+  return vicinity_.within(box_of(p, ahead), zone + path.radius_m);
+}
+
+bool InterestMatching::outside(std::uint32_t i) const {
+  const Vec3& p = own_.path(i).pose.p_WB;
+  if (!aura_.warns()) return !vicinity_.home().contains(p.x(), p.y());
+  return vicinity_.home().distance(p.x(), p.y()) > own_.path(i).radius_m;
+}
+
+}  // namespace aurasim::core
