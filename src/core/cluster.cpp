@@ -49,8 +49,8 @@ void Clusters::begin(std::span<const Path> paths, std::span<const std::uint64_t>
   for (const Contact& j : joints) unite(j.a, j.b);
 }
 
-/// Clusters that were looked at, and those of changed bodies, are made anew of their contacts and joints. The others are
-/// what these make them already.
+/// Clusters that were looked at, and those of changed bodies, are made anew of their contacts and joints. The others
+/// are what these make them already.
 void Clusters::go_on(std::span<const Path> paths, std::span<const std::uint64_t> regions,
                      std::span<const Contact> contacts, std::span<const Contact> joints, const Change& change) {
   begin_step(paths);

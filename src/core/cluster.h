@@ -23,9 +23,9 @@ class Clusters {
 
   /// What differs from the state before.
   struct Change {
-    std::span<const std::uint32_t> bodies;     ///< their paths may have changed; ascending
-    std::span<const Contact> contacts;         ///< all new contacts are among these
-    std::span<const std::uint32_t> in_reach;   ///< other regions are in reach of these bodies, and of no others
+    std::span<const std::uint32_t> bodies;    ///< their paths may have changed; ascending
+    std::span<const Contact> contacts;        ///< all new contacts are among these
+    std::span<const std::uint32_t> in_reach;  ///< other regions are in reach of these bodies, and of no others
   };
   /// Like begin(), from the clusters of the state before, which had the same bodies and joints. `contacts` and `joints`
   /// are in ascending order.

@@ -16,7 +16,7 @@ using horizon::kHomewardHops;
 /// Is the body's bounding sphere at most `distance_m` from the sphere of `radius_m` around `p`?
 bool is_within(const Path& body, const Vec3& p, double radius_m, double distance_m) {
   const double reach = body.radius_m + radius_m + distance_m;
-  return (body.pose.p_WB - p).squaredNorm() <= reach * reach;
+  return reach >= 0 && (body.pose.p_WB - p).squaredNorm() <= reach * reach;
 }
 
 /// True if an own cluster that so far would go to `other` goes to `host` instead. False if `host` is not among `live`.
@@ -132,7 +132,7 @@ void InterestMatching::mark_regions() {
   others_top_radius_ = std::max(others_top_radius_, own_.top_radius());
   const double slow_band = band(NearIndex::kSlow, 1 + kHomewardHops);
   const double fast_band = band(top_speed, 1 + kHomewardHops);
-  own_.find_close(band(top_speed, horizon::kMostHops + kHomewardHops));
+  own_.find_close(std::max(0.0, band(top_speed, horizon::kMostHops + kHomewardHops)));
   for (const std::uint32_t i : own_.close()) {
     const Path& path = own_.path(i);
     const bool slow = path.speed_m_s <= NearIndex::kSlow;

@@ -1,5 +1,7 @@
 #include "core/own_bodies.h"
 
+#include <utility>
+
 namespace aurasim::core {
 
 void OwnBodies::measure(std::uint32_t i, const BodyState& body, Step now) {
@@ -16,11 +18,15 @@ void OwnBodies::look(const Snapshot& snapshot) {
   seen_ = snapshot.number;
   changed_.clear();
   if (goes_on_) {
+    paths_before_.clear();
+    for (const std::uint32_t i : snapshot.changed) paths_before_.push_back(paths_[i]);
     changed_.assign(snapshot.changed.begin(), snapshot.changed.end());
     top_speed_ = resting_speed_;
     for (const std::uint32_t i : changed_) measure(i, snapshot.bodies[i], snapshot.step);
     return;
   }
+  std::swap(ids_, ids_before_);
+  std::swap(paths_, paths_before_);
   top_speed_ = resting_speed_ = top_radius_ = 0;
   ids_.resize(snapshot.bodies.size());
   paths_.resize(snapshot.bodies.size());

@@ -23,6 +23,9 @@ class OwnBodies {
   /// True if the last state has the bodies of the one before, and changed() names all that differ.
   bool goes_on() const { return goes_on_; }
   std::span<const std::uint32_t> changed() const { return changed_; }
+  /// Paths in the state before: of the bodies of changed() if goes_on(), else of those of ids_before().
+  std::span<const Path> paths_before() const { return paths_before_; }
+  std::span<const BodyId> ids_before() const { return ids_before_; }
 
   std::size_t size() const { return paths_.size(); }
   std::span<const Path> paths() const { return paths_; }
@@ -48,8 +51,8 @@ class OwnBodies {
   std::uint64_t seen_ = 0;  ///< number of the last snapshot
   bool goes_on_ = false;
   std::vector<std::uint32_t> changed_;
-  std::vector<BodyId> ids_;
-  std::vector<Path> paths_;
+  std::vector<BodyId> ids_, ids_before_;  ///< ascending
+  std::vector<Path> paths_, paths_before_;
   double resting_speed_ = 0;  ///< the fastest that a body which is not in changed_ says that it may be, m/s
   double top_speed_ = 0;
   double top_radius_ = 0;

@@ -86,9 +86,9 @@ class Projection {
   const Vicinity& vicinity_;
   std::vector<Track> tracks_, before_;  ///< ascending id
   std::vector<BodyId> ids_;             ///< ids of tracks_, in one array for fast look-up
-  std::uint64_t seen_ = 0;               ///< number of the last snapshot
-  bool goes_on_ = false;                 ///< the last snapshot has named what differs from the one before
-  std::vector<std::uint32_t> busy_;      ///< bodies that may project, or have; ascending
+  std::uint64_t seen_ = 0;              ///< number of the last snapshot
+  bool goes_on_ = false;                ///< the last snapshot has named what differs from the one before
+  std::vector<std::uint32_t> busy_;     ///< bodies that may project, or have; ascending
   std::vector<std::uint32_t> were_busy_;
   std::vector<AuraRecord> ghosts_;
   std::vector<BodyId> gone_;  ///< projected in the last state, no longer hosted, and not handed over

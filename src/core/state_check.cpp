@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 #include "core/aura_precision.h"
@@ -27,6 +28,13 @@ void sort_by_id(Bodies& bodies) {
   const auto tail = std::ranges::is_sorted_until(bodies, {}, &Body::id);
   std::ranges::stable_sort(tail, bodies.end(), {}, &Body::id);
   std::ranges::inplace_merge(bodies, tail, {}, &Body::id);
+}
+
+/// Does a body rest that had path `before` in the state before and has `now`?
+bool rests(const Path& before, const Path& now) {
+  return !before.moves && !now.moves && before.unborn_steps == 0 && now.unborn_steps == 0 &&
+         before.prototype == now.prototype && before.pose.p_WB == now.pose.p_WB &&
+         before.pose.q_WB.coeffs() == now.pose.q_WB.coeffs() && before.v_WB == now.v_WB && before.w_WB == now.w_WB;
 }
 
 /// How far a path of length `longest` between two points can leave the straight line, if they are `apart` from each
@@ -74,12 +82,62 @@ void StateCheck::take(const Neighbour& neighbour) {
   for (const AuraRecord& aura : neighbour.past_arrived()) add(aura, aura.stamp, value_of(neighbour.id()));
 }
 
+/// A body that has not changed since some state has the path of the present one in all states from there on. It is
+/// stored in none of them, so a sleeper costs nothing.
 void StateCheck::take_own(const Snapshot& snapshot, const InterestMatching& matching) {
+  matching_ = &matching;
   State& now = state(snapshot.step);
-  now.own.reserve(snapshot.bodies.size());
-  for (std::uint32_t i = 0; i < snapshot.bodies.size(); ++i) {
-    const BodyState& body = snapshot.bodies[i];
-    now.own.push_back({body.id, value_of(vicinity_.self), matching.path(i), body.birth <= snapshot.step});
+  const OwnBodies& own = matching.own();
+  if (own.goes_on()) {
+    take_changes(own, now);
+  } else {
+    take_all(own, now);
+  }
+}
+
+void StateCheck::take_changes(const OwnBodies& own, State& now) {
+  for (std::size_t k = 0; k < own.changed().size(); ++k) {
+    const std::uint32_t i = own.changed()[k];
+    note_before(own.id(i), own.paths_before()[k], noted_[i], now.step);
+    note(i, own, now);
+  }
+}
+
+/// Bodies have come or gone, so each is compared with what it was.
+void StateCheck::take_all(const OwnBodies& own, State& now) {
+  std::swap(noted_, noted_before_);
+  noted_.assign(own.size(), now.step);
+  noted_before_.resize(own.ids_before().size(), now.step - 1);
+  std::size_t j = 0;
+  const auto leave = [&] {
+    note_before(own.ids_before()[j], own.paths_before()[j], noted_before_[j], now.step);
+    ++j;
+  };
+  for (std::uint32_t i = 0; i < own.size(); ++i) {
+    while (j < own.ids_before().size() && own.ids_before()[j] < own.id(i)) leave();
+    const bool was_here = j < own.ids_before().size() && own.ids_before()[j] == own.id(i);
+    if (was_here && rests(own.paths_before()[j], own.path(i))) {
+      noted_[i] = noted_before_[j++];
+      continue;
+    }
+    if (was_here) leave();
+    note(i, own, now);
+  }
+  while (j < own.ids_before().size()) leave();
+}
+
+/// Stores one of our bodies in the present state.
+void StateCheck::note(std::uint32_t i, const OwnBodies& own, State& now) {
+  now.own.push_back({own.id(i), value_of(vicinity_.self), own.path(i), own.path(i).unborn_steps <= 0});
+  noted_[i] = now.step;
+}
+
+/// Stores the path of a body that has changed in state `now`, or is gone in it, in the earlier states that have the
+/// same path: those after `noted`.
+void StateCheck::note_before(BodyId id, const Path& before, Step noted, Step now) {
+  for (auto state = states_.rbegin(); state != states_.rend() && state->step > noted; ++state) {
+    if (state->step >= now) continue;
+    state->own.push_back({id, value_of(vicinity_.self), before, before.unborn_steps <= 0});
   }
 }
 
@@ -286,11 +344,31 @@ void StateCheck::compare_with_others(const Way& one, std::uint32_t from, double 
   });
 }
 
+/// Compares `other` with our bodies that have not changed since the state before.
+void StateCheck::compare_with_resting(const Way& other, double margin_m) {
+  Progress::mark();
+  const double range = margin_m + other.reach_m;
+  matching_->clusters().near().for_each_near(
+      other.middle, 0, [range](double) { return range; },
+      [&](std::uint32_t i) {
+        const Path& path = matching_->path(i);
+        const double apart = range + path.radius_m;
+        if (noted_[i] >= step_ || (path.pose.p_WB - other.middle).squaredNorm() > apart * apart) return;
+        const Sighting one{matching_->id(i), value_of(vicinity_.self), path, true};
+        if (one.id == other.now->id || !touch(motion(one, &one), motion(*other.now, other.before))) return;
+        const auto [a, b] = std::minmax(one.id, other.now->id);
+        found_.push_back({0, step_, a, b});
+      });
+}
+
 void StateCheck::check(Step step) {
   state(step);  // inserts both states first, because an insertion below would invalidate a reference
   State& before = state(step - 1);
   State& after = state(step);
-  for (State* each : {&before, &after}) sort_by_id(each->others);
+  for (State* each : {&before, &after}) {
+    sort_by_id(each->own);
+    sort_by_id(each->others);
+  }
   if (after.others.empty()) return;
   step_ = step;
   gather_ways(before, after);
@@ -308,6 +386,8 @@ void StateCheck::check(Step step) {
   for (const Way& way : own_) {
     if (covered_.may_meet(way.middle, way.reach_m + margin)) compare_with_others(way, 0, margin);
   }
+  for (const Way& way : others_) compare_with_resting(way, margin);
+  std::ranges::sort(found_, {}, [](const Alarm& alarm) { return std::tuple(alarm.step, alarm.a, alarm.b); });
   for (std::uint32_t i = 0; several && i < others_.size(); ++i) compare_with_others(others_[i], i + 1, margin);
 }
 

@@ -19,6 +19,7 @@
 namespace aurasim::core {
 
 class InterestMatching;
+class OwnBodies;
 
 class StateCheck {
  public:
@@ -56,7 +57,7 @@ class StateCheck {
   };
   struct State {
     Step step = 0;
-    std::vector<Sighting> own;
+    std::vector<Sighting> own;     ///< our bodies but for those that have not changed from this state on (noted_)
     std::vector<Sighting> others;  ///< bodies of other worlds
   };
   /// A sphere of `reach_m` around `middle` that holds all of a body throughout a step. Cheaper than a Motion, and
@@ -74,6 +75,11 @@ class StateCheck {
   };
 
   State& state(Step step);
+  void take_changes(const OwnBodies& own, State& now);
+  void take_all(const OwnBodies& own, State& now);
+  void note(std::uint32_t i, const OwnBodies& own, State& now);
+  void note_before(BodyId id, const Path& before, Step noted, Step now);
+  void compare_with_resting(const Way& other, double margin_m);
   void add(const AuraRecord& aura, Step step, std::uint32_t world);
   void check(Step step);
   void forget();
@@ -93,9 +99,12 @@ class StateCheck {
   Step checked_;
   Step whole_;  ///< nothing is missing of states up to this one, in which the run stood
   std::deque<State> states_;
-  State spare_;                    ///< memory for the next one of states_
-  std::vector<Way> own_, others_;  ///< ways in the step that is being checked
-  std::vector<Path> middles_;      ///< middles of others_, indexed by near_
+  const InterestMatching* matching_ = nullptr;  ///< that of the last take_own()
+  std::vector<Step> noted_;                     ///< by body of ours: the last state in which it has changed
+  std::vector<Step> noted_before_;              ///< memory for the next noted_
+  State spare_;                                 ///< memory for the next one of states_
+  std::vector<Way> own_, others_;               ///< ways in the step that is being checked
+  std::vector<Path> middles_;                   ///< middles of others_, indexed by near_
   NearIndex near_;
   CoveredColumns covered_;  ///< by others_; most of our bodies are far from all of them
   Step step_ = 0;           ///< the step that is being checked

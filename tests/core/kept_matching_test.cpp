@@ -67,7 +67,9 @@ class TwoLooks {
   };
 
   Vec3 somewhere() { return {random_.between(-21, 21), random_.between(-30, 30), 0.5}; }
-  Vec3 somewhere_else() { return {(random_.chance(0.5) ? 1 : -1) * random_.between(16, 30), random_.between(-30, 30), 0.5}; }
+  Vec3 somewhere_else() {
+    return {(random_.chance(0.5) ? 1 : -1) * random_.between(16, 30), random_.between(-30, 30), 0.5};
+  }
 
   void add(std::uint64_t id) {
     BodyState& state = snapshot_.bodies.emplace_back();
@@ -198,7 +200,9 @@ class TwoLooks {
     ASSERT_EQ(keeps_->projection().counters().bad_phase_changes, looks_->projection().counters().bad_phase_changes);
     ASSERT_EQ(keeps_->largest_cluster(), looks_->largest_cluster());
     const auto alarm = [](const Alarm& a) { return std::tuple(a.step, a.a, a.b); };
-    const auto list = [](std::span<const Alarm> standing) { return std::vector<Alarm>(standing.begin(), standing.end()); };
+    const auto list = [](std::span<const Alarm> standing) {
+      return std::vector<Alarm>(standing.begin(), standing.end());
+    };
     std::vector<Alarm> raised = list(keeps_->alarms().standing()), wanted_alarms = list(looks_->alarms().standing());
     std::ranges::sort(raised, {}, alarm), std::ranges::sort(wanted_alarms, {}, alarm);
     ASSERT_TRUE(std::ranges::equal(raised, wanted_alarms, {}, alarm, alarm));
@@ -223,7 +227,8 @@ class TwoLooks {
       const auto [known, is_new] = label.try_emplace(is.clusters().of(i), wanted.clusters().of(i));
       ASSERT_EQ(known->second, wanted.clusters().of(i));
       const Audience none = kNobodyListens;
-      ASSERT_TRUE(std::ranges::binary_search(is.near_others(), i) || (wanted.audience(i) == none && !wanted.outside(i)));
+      ASSERT_TRUE(std::ranges::binary_search(is.near_others(), i) ||
+                  (wanted.audience(i) == none && !wanted.outside(i)));
       ASSERT_TRUE(std::ranges::binary_search(is.marked(), i) || !wanted.noticed(i));
     }
     ASSERT_EQ(is.clusters().links().size(), wanted.clusters().links().size());
