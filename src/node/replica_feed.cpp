@@ -38,6 +38,14 @@ void ReplicaFeed::note(const StepReport& report) {
   for (const core::BodyId id : report.let_go) published_.erase(id);
 }
 
+void ReplicaFeed::note(const core::Snapshot& snapshot) {
+  if (seen_ != 0 && snapshot.number == seen_) return;
+  all_may_have_changed_ = all_may_have_changed_ || !snapshot.goes_on_from(seen_);
+  seen_ = snapshot.number;
+  if (all_may_have_changed_) return changed_.clear();
+  for (const std::uint32_t i : snapshot.changed) changed_.push_back(snapshot.bodies[i].id);
+}
+
 bool ReplicaFeed::is_news(const core::BodyState& body) const {
   const auto found = published_.find(body.id);
   if (found == published_.end()) return true;
@@ -61,17 +69,29 @@ void ReplicaFeed::begin(core::Replica& replica, core::Step stamp, bool key_frame
 const core::Replica& ReplicaFeed::compose_changes(const core::Snapshot& snapshot) {
   ++sequence_;
   begin(changes_, snapshot.step, false);
-  for (const core::BodyState& body : snapshot.bodies) {
-    if (body.birth > snapshot.step || !is_news(body)) continue;
-    changes_.bodies.push_back(core::replica_body(body, self_));
-    const core::ReplicaBody& row = changes_.bodies.back();
-    published_.insert_or_assign(body.id, Published{row.epoch, row.asleep, row.p_WB, row.q_WB});
-    left_.erase(body.id);  // the body has come back
+  note(snapshot);
+  if (all_may_have_changed_) {
+    for (const core::BodyState& body : snapshot.bodies) compose_change(body);
+  } else {
+    std::ranges::sort(changed_);
+    const auto twins = std::ranges::unique(changed_);
+    changed_.erase(twins.begin(), twins.end());
+    for (const core::BodyId id : changed_) compose_change(*core::find_body(snapshot.bodies, id));
   }
+  all_may_have_changed_ = snapshot.number == 0;
+  changed_.clear();
   compose_departures();
   compose_removals(snapshot);
   changed_since_key_frame_ = changed_since_key_frame_ || !changes_.bodies.empty() || !changes_.removed.empty();
   return changes_;
+}
+
+void ReplicaFeed::compose_change(const core::BodyState& body) {
+  if (body.birth > changes_.stamp || !is_news(body)) return;
+  changes_.bodies.push_back(core::replica_body(body, self_));
+  const core::ReplicaBody& row = changes_.bodies.back();
+  published_.insert_or_assign(body.id, Published{row.epoch, row.asleep, row.p_WB, row.q_WB});
+  left_.erase(body.id);  // the body has come back
 }
 
 void ReplicaFeed::compose_departures() {
@@ -87,9 +107,10 @@ void ReplicaFeed::compose_departures() {
 }
 
 void ReplicaFeed::compose_removals(const core::Snapshot& snapshot) {
-  const auto born = std::count_if(snapshot.bodies.begin(), snapshot.bodies.end(),
-                                  [&](const core::BodyState& body) { return body.birth <= snapshot.step; });
-  if (published_.size() == static_cast<std::size_t>(born)) return;
+  const auto is_born = [&](const core::BodyState& body) { return body.birth <= snapshot.step; };
+  const auto born =
+      snapshot.number != 0 ? snapshot.born : static_cast<std::size_t>(std::ranges::count_if(snapshot.bodies, is_born));
+  if (published_.size() == born) return;
   for (const auto& [id, published] : published_) {
     if (!is_here(snapshot, id)) changes_.removed.push_back({id, published.epoch});
   }
@@ -127,6 +148,7 @@ void ReplicaFeed::forget() {
   published_.clear();
   left_.clear();
   changed_since_key_frame_ = true;
+  all_may_have_changed_ = true;
 }
 
 }  // namespace aurasim::node

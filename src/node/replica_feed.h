@@ -26,6 +26,10 @@ class ReplicaFeed {
   /// tick.
   void note(const StepReport& report);
 
+  /// To be called with each state while somebody receives replicas, before the changes are composed. Notes which bodies
+  /// may have changed since the last tick, so that the others need not be looked at.
+  void note(const core::Snapshot& snapshot);
+
   /// Composes the changes since the last tick. `snapshot`: the state of this tick, after the departures of its step.
   /// The result is valid until the next call.
   const core::Replica& compose_changes(const core::Snapshot& snapshot);
@@ -48,6 +52,7 @@ class ReplicaFeed {
     Eigen::Quaternionf q_WB;
   };
   bool is_news(const core::BodyState& body) const;
+  void compose_change(const core::BodyState& body);
   void compose_departures();
   void compose_removals(const core::Snapshot& snapshot);
   void begin(core::Replica& replica, core::Step stamp, bool key_frame) const;
@@ -62,6 +67,9 @@ class ReplicaFeed {
     core::Step birth = 0;   ///< state from which on the body is published
   };
   std::map<core::BodyId, Left> left_;  ///< bodies that have left since the last tick
+  std::uint64_t seen_ = 0;             ///< number of the last snapshot
+  bool all_may_have_changed_ = true;   ///< since the last tick
+  std::vector<core::BodyId> changed_;  ///< else these
   core::Replica changes_;
   core::Replica all_;
   bool changed_since_key_frame_ = false;

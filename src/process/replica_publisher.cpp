@@ -47,6 +47,7 @@ void ReplicaPublisher::after_step(node::Node& node, const node::StepReport& repo
     return;
   }
   feed_->note(report);
+  feed_->note(node.world().snapshot());
   if (report.step % tick_steps_ == 0 && report.step > composed_) compose(node);
   held_.give_out(node.shown_step());
 }

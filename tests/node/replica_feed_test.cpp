@@ -73,6 +73,34 @@ TEST_F(Feed, SaysFromWhomAndWhenAndCountsItsTicks) {
   EXPECT_EQ(publish().sequence, 2U);
 }
 
+/// The last snapshot with the next number, of which the bodies of `changed` may differ from before.
+core::Snapshot next_of(core::Snapshot snapshot, std::vector<std::uint32_t> changed) {
+  ++snapshot.number;
+  ++snapshot.step;
+  snapshot.goes_on = true;
+  snapshot.born = snapshot.bodies.size();
+  snapshot.changed = std::move(changed);
+  return snapshot;
+}
+
+TEST_F(Feed, LooksAtTheBodiesThatSnapshotsSinceTheLastTickCallChanged) {
+  for (const std::uint64_t id : {1U, 2U, 3U, 4U}) place(id, 0);
+  core::Snapshot now = next_of(snapshot(), {});
+  EXPECT_EQ(feed_.compose_changes(now).bodies.size(), 4U) << "nothing is known of earlier snapshots";
+  now.bodies[1].pose.p_WB.x() = 1;
+  now = next_of(now, {1});
+  feed_.note(now);
+  now.bodies[3].pose.p_WB.x() = 1;
+  now.bodies[0].pose.p_WB.x() = 1;  // not called changed
+  now = next_of(now, {3});
+  const core::Replica& changes = feed_.compose_changes(now);
+  ASSERT_EQ(changes.bodies.size(), 2U);
+  EXPECT_EQ(changes.bodies[0].id, BodyId{2});
+  EXPECT_EQ(changes.bodies[1].id, BodyId{4});
+  now = next_of(next_of(now, {}), {});  // the feed has not seen the one between
+  EXPECT_EQ(feed_.compose_changes(now).bodies.size(), 1U);
+}
+
 TEST_F(Feed, TellsOnlyWhatChanged) {
   place(1, 0);
   place(2, 5);
