@@ -68,6 +68,7 @@ const Cut& Cuts::before(core::Step touch, std::size_t farther) const {
 }
 
 void Cuts::drop(Cut& cut) {
+  cut.bodies.before = nullptr;
   if (memory_.size() < kMostMemory) memory_.push_back(std::move(cut.bodies));
 }
 
@@ -76,9 +77,9 @@ void Cuts::clear() {
   memory_.clear();
 }
 
-core::ClusterState Cuts::take_memory() {
+core::ChangedState Cuts::take_memory() {
   if (memory_.empty()) return {};
-  core::ClusterState memory = std::move(memory_.back());
+  core::ChangedState memory = std::move(memory_.back());
   memory_.pop_back();
   return memory;
 }

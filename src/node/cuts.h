@@ -19,7 +19,7 @@ namespace aurasim::node {
 /// A node's part of a consistent cut through the run, from which it can go back to the state.
 struct Cut {
   core::Step step = 0;
-  core::ClusterState bodies;            ///< hosted here; those that left in this state are taken out
+  core::ChangedState bodies;            ///< hosted here; those that left in this state are taken out
   std::vector<core::Adoption> joining;  ///< clusters sent here in this state or before that have not joined yet
   ToBeBorn to_be_born;                  ///< also with the spawn orders received after the cut
   CollisionCounts collisions;
@@ -37,7 +37,7 @@ class Cuts {
   void keep(Cut cut) { cuts_.push_back(std::move(cut)); }
   void clear();
   /// Memory of the bodies of a dropped cut, for the next one. Its contents mean nothing.
-  core::ClusterState take_memory();
+  core::ChangedState take_memory();
   bool empty() const { return cuts_.empty(); }
   /// Precondition: not empty.
   core::Step oldest() const { return cuts_.front().step; }
@@ -64,7 +64,7 @@ class Cuts {
 
   int lookahead_;
   std::deque<Cut> cuts_;
-  std::vector<core::ClusterState> memory_;
+  std::vector<core::ChangedState> memory_;
   std::size_t stubborn_ = 0;  ///< number of redos in a row that have not brought a pair together
 };
 

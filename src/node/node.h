@@ -102,7 +102,7 @@ class Node {
   /// This region's part of the world in the present state, for a run that is held. Empty while some message sent here
   /// up to that state has not arrived. A redo may still go back to before this state; then the part belongs to a world
   /// that no longer counts.
-  std::optional<core::WorldCut> present_part() const;
+  std::optional<core::WorldCut> present_part();
   /// A part without bodies, with all orders that this node knows by now. It brings `earlier`, a saved world, up to
   /// date.
   core::WorldCut orders_now(const core::WorldCut& earlier) const;
@@ -196,7 +196,7 @@ class Node {
   void learn_of_redos();
   bool redo_is_due() const;
   void take_cut();
-  Cut cut(core::ClusterState memory = {}) const;
+  Cut cut(core::ChangedState memory = {});
   void forget_cuts();
   void order_redo();
   void put_back();

@@ -25,7 +25,7 @@ core::WorldCut Node::part_of_world(Cut cut) const {
   core::WorldCut part;
   part.step = cut.step;
   part.births_known = cut.step + core::horizon::birth_notice(setup_.protocol.aura.lookahead);
-  part.bodies = std::move(cut.bodies);
+  part.bodies = core::whole(std::move(cut.bodies));
   core::Step oldest = cut.step;
   for (core::Adoption& adoption : cut.joining) {
     oldest = std::min(oldest, adoption.stamp);
@@ -52,7 +52,7 @@ void Node::add_orders(core::WorldCut& part, core::Step after) const {
   scene_.add_to(part, after, protocol_->orders_to_come());
 }
 
-std::optional<core::WorldCut> Node::present_part() const {
+std::optional<core::WorldCut> Node::present_part() {
   if (!has_all_until(current_step())) return std::nullopt;
   Cut now = cut();
   for (const core::HandOff& to_come : protocol_->intake().to_come()) {

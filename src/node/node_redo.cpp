@@ -53,7 +53,7 @@ void Node::take_cut() {
 }
 
 /// The cut of the present state. Uses `memory` for its bodies.
-Cut Node::cut(core::ClusterState memory) const {
+Cut Node::cut(core::ChangedState memory) {
   world_.copy_all(memory);
   return {current_step(), std::move(memory), {}, to_be_born_, watch_.counts()};
 }
@@ -134,9 +134,10 @@ void Node::put_back() {
   };
   const bool is_the_beginning = beginning_ && cut.step == beginning_->world.step;
   if (is_the_beginning) {
-    cut.bodies = our_part();  // there is no time to bring a pair together later
+    cut.bodies = core::ChangedState(our_part());  // there is no time to bring a pair together later
   } else {
-    raise(cut.bodies);
+    cut.bodies = core::ChangedState(core::whole(std::move(cut.bodies)));
+    raise(cut.bodies.now);
   }
   for (core::Adoption& adoption : cut.joining) raise(adoption.cluster);
 

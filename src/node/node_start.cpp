@@ -40,10 +40,10 @@ const StepReport& Node::start(core::WorldCut world, Recorded recorded) {
   execute_saved(beginning_->world);
   world_.moves().give_up_expected(setup_.protocol.start + 1);
   if (is_later) protocol_.emplace(setup_.protocol, *map_, *clearance_);  // else it may have announced orders already
-  const Cut part{setup_.protocol.start, our_part(), {}, to_be_born_, watch_.counts()};
+  const Cut part{setup_.protocol.start, core::ChangedState(our_part()), {}, to_be_born_, watch_.counts()};
   protocol_->listen_to(setup_.protocol.related);
   put_in(part);
-  for (const core::BodyRecord& body : part.bodies.bodies) {
+  for (const core::BodyRecord& body : part.bodies.now.bodies) {
     report_.births.push_back({body.id, body.birth});
     if (body.birth > part.step && !protocol_->computes_again()) watch_.newborn(body.id, body.birth);
   }
@@ -79,7 +79,11 @@ const StepReport& Node::take_map(const core::ProtocolSettings& settings, const c
 /// Puts this region's part of a state into the world, with the clusters that had been sent here in that state or
 /// before and join later.
 void Node::put_in(const Cut& part) {
-  world_.put_back(part.step, part.bodies);
+  if (part.bodies.before == nullptr) {
+    world_.put_back(part.step, part.bodies.now);
+  } else {
+    world_.put_back(part.step, core::whole(part.bodies));
+  }
   watch_.put_back(part.collisions);
   to_be_born_ = part.to_be_born;
   std::uint32_t nth = 0;

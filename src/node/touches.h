@@ -21,7 +21,7 @@ class Touches {
     core::BodyId id{};
     bool touched = false;
   };
-  std::uint64_t seen_ = 0;            ///< number of the last snapshot
+  std::uint64_t seen_ = 0;           ///< number of the last snapshot
   std::vector<Touch> now_, before_;  ///< ascending id: of the last state, and of one before it
 };
 

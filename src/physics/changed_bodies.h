@@ -24,7 +24,13 @@ class ChangedBodies {
     all_ = true;
   }
   bool all() const { return all_; }
-  bool empty() const { return !all_ && ids_.empty(); }
+  /// The noted bodies, ascending, also those that are in no table any more. Precondition: not all().
+  const std::vector<core::BodyId>& ids() {
+    sort_out();
+    return ids_;
+  }
+  /// At least the number of noted bodies.
+  std::size_t most() const { return ids_.size(); }
   void clear() {
     ids_.clear();
     known_ = 0;

@@ -177,8 +177,21 @@ bool DynamicsWorld::knows_moved() const { return bullet_->world->knows_moved(); 
 
 std::span<btRigidBody* const> DynamicsWorld::moved() const { return bullet_->world->moved(); }
 
-void DynamicsWorld::add_contacts_of_moved(std::vector<core::Contact>& contacts) const {
+void DynamicsWorld::add_contacts_of_moved(std::vector<std::pair<int, int>>& contacts) const {
   bullet_->world->add_contacts_of_moved(contacts);
+}
+
+void DynamicsWorld::add_manifolds(const btRigidBody& a, const btRigidBody& b,
+                                  std::vector<const btPersistentManifold*>& found) const {
+  const auto proxy = [](const btRigidBody& body) { return const_cast<btBroadphaseProxy*>(body.getBroadphaseProxy()); };
+  if (proxy(a) == nullptr || proxy(b) == nullptr) return;  // a static that is gone
+  const btBroadphasePair* const pair = bullet_->pairs.findPair(proxy(a), proxy(b));
+  if (pair == nullptr || pair->m_algorithm == nullptr) return;
+  btManifoldArray manifolds;
+  pair->m_algorithm->getAllContactManifolds(manifolds);
+  for (int i = 0; i < manifolds.size(); ++i) {
+    if (manifolds[i]->getNumContacts() > 0) found.push_back(manifolds[i]);
+  }
 }
 
 void DynamicsWorld::make_manifolds(btRigidBody& a, btRigidBody& b, std::vector<PartManifold>& result) {

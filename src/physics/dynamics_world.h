@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
@@ -59,7 +60,9 @@ class DynamicsWorld {
   /// See World in physics/stepper.h. Valid until bodies come or go.
   bool knows_moved() const;
   std::span<btRigidBody* const> moved() const;
-  void add_contacts_of_moved(std::vector<core::Contact>& contacts) const;
+  void add_contacts_of_moved(std::vector<std::pair<int, int>>& contacts) const;
+  /// Appends the manifolds of two objects that have a point.
+  void add_manifolds(const btRigidBody& a, const btRigidBody& b, std::vector<const btPersistentManifold*>& found) const;
 
   /// Makes the manifolds of a pair, even if both bodies sleep, empties them, and lists them in `result`. Others would
   /// not outlive the next collision detection.

@@ -291,6 +291,23 @@ std::optional<JointMotion> JointTable::motion(core::JointId id) const {
   return JointMotion{entry.axes.position, entry.speed, entry.axes.drive_impulse / substep_s_};
 }
 
+void JointTable::append(core::JointId id, core::ClusterState& cluster) const {
+  const Entry& entry = entries_[core::value_of(id)];
+  const auto first = static_cast<std::uint32_t>(cluster.joint_values.size());
+  cluster.joints.push_back({id, first, static_cast<std::uint32_t>(value_count(entry))});
+  cluster.joint_values.resize(first + value_count(entry));
+  write_values(entry, std::span(cluster.joint_values).subspan(first));
+}
+
+void JointTable::copy_all(const BodyTable& bodies, core::ClusterState& all) const {
+  all.joints.clear();
+  all.joint_values.clear();
+  for (std::uint32_t i = 0; i < entries_.size(); ++i) {
+    const core::JointSpec& joint = scene_->joints[i];
+    if (bodies.find(joint.a) != nullptr || (joint.b && bodies.find(*joint.b) != nullptr)) append(core::JointId{i}, all);
+  }
+}
+
 std::uint64_t JointTable::append_to(core::ClusterState& cluster) const {
   std::vector<core::JointId> joints;
   for (const core::BodyRecord& body : cluster.bodies) {
@@ -302,10 +319,7 @@ std::uint64_t JointTable::append_to(core::ClusterState& cluster) const {
   for (const core::JointId id : joints) {
     const core::JointSpec& joint = scene_->joints[core::value_of(id)];
     const Entry& entry = entries_[core::value_of(id)];
-    const auto first = static_cast<std::uint32_t>(cluster.joint_values.size());
-    cluster.joints.push_back({id, first, static_cast<std::uint32_t>(value_count(entry))});
-    cluster.joint_values.resize(first + value_count(entry));
-    write_values(entry, std::span(cluster.joint_values).subspan(first));
+    append(id, cluster);
     if (entry.constraint && joint.b && !(has(cluster, joint.a) && has(cluster, *joint.b))) ++across;
   }
   return across;

@@ -58,6 +58,9 @@ class JointTable {
   /// joints that also hold a body here outside the cluster.
   std::uint64_t append_to(core::ClusterState& cluster) const;
 
+  /// Replaces the joints of `all` by those of all bodies of the table, in order of id.
+  void copy_all(const BodyTable& bodies, core::ClusterState& all) const;
+
   /// The mechanisms that the joints in Bullet's world make.
   const std::vector<core::BoundBody>& mechanisms() const { return mechanisms_; }
   /// Updates mechanisms(). Returns false if they have been up to date.
@@ -89,6 +92,7 @@ class JointTable {
   void read_values(std::span<const double> values, Entry& entry) const;
   std::size_t value_count(const Entry& entry) const;
   void write_values(const Entry& entry, std::span<double> values) const;
+  void append(core::JointId id, core::ClusterState& cluster) const;
   void measure_again(Entry& entry, double since_s);
   void forget(core::JointId id);
 

@@ -80,6 +80,8 @@ core::ClusterState RegionWorld::peek_all() const {
 
 void RegionWorld::copy_all(core::ClusterState& all) const { impl_->simulation.copy_all(all); }
 
+void RegionWorld::copy_all(core::ChangedState& copy) { impl_->simulation.copy_all(copy); }
+
 void RegionWorld::put_back(core::Step step, const core::ClusterState& bodies) {
   impl_->simulation.put_back(step, bodies);
   impl_->made_up.clear();

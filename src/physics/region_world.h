@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/body_state.h"
+#include "core/changed_state.h"
 #include "core/control_log.h"
 #include "core/ids.h"
 #include "core/order.h"
@@ -63,6 +64,8 @@ class RegionWorld {
   core::ClusterState peek_all() const;
   /// Like peek_all(), into `all`, whose memory is reused.
   void copy_all(core::ClusterState& all) const;
+  /// The same. Where most bodies sleep, copies of successive states share what has not changed.
+  void copy_all(core::ChangedState& copy);
   /// Goes back to an earlier state, in which `bodies` are all bodies of this world. Orders are executed again when they
   /// are due.
   void put_back(core::Step step, const core::ClusterState& bodies);

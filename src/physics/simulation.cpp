@@ -53,6 +53,7 @@ Simulation::Simulation(const core::Scene& scene, const Settings& settings, std::
       timeline_(timeline),
       joints_(scene, settings),
       world_(scene.gravity, settings) {
+  notes_.give_up_copy();
   show_statics(step_);
 }
 
@@ -149,6 +150,7 @@ void Simulation::join(const core::ClusterState& cluster) {
   joints_.restore(cluster, table_);
   insert_born();
   restore_contacts(cluster);
+  for (const core::ManifoldRecord& manifold : cluster.manifolds) notes_.note_pair(manifold.object0, manifold.object1);
 }
 
 /// The body or static of a reference; null if it is not here.
@@ -246,12 +248,21 @@ void Simulation::note_moved() {
   moved_.clear();
   if (++steps_since_snapshot_ > 1) notes_.for_snapshot.note_all();  // contacts of the step before are not known
   if (!world_.knows_moved() || std::exchange(will_stop_sleepers_, false)) return notes_.note_all();
+  moved_count_ = world_.moved().size();
   for (const btRigidBody* body : world_.moved()) {
     const auto place = static_cast<std::size_t>(body->getUserIndex());
     moved_.push_back(static_cast<std::uint32_t>(place));
-    notes_.note(table_[place].id);
+    notes_.note_moved(table_[place].id);
   }
-  world_.add_contacts_of_moved(moved_contacts_);
+  touched_.clear();
+  world_.add_contacts_of_moved(touched_);
+  const auto ref = [this](int index) -> core::ObjectRef {
+    return is_static(index) ? index : core::ref_of(table_[static_cast<std::size_t>(index)].id);
+  };
+  for (const auto& [a, b] : touched_) {
+    notes_.note_pair(ref(a), ref(b));
+    if (!is_static(a)) moved_contacts_.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
+  }
 }
 
 void Simulation::collect_collisions() {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/body_state.h"
+#include "core/changed_state.h"
 #include "core/observation.h"
 #include "core/scene.h"
 #include "physics/body_table.h"
@@ -48,6 +49,8 @@ class Simulation {
   core::ClusterState peek(std::span<const core::BodyId> bodies) const;
   /// Like peek() of all bodies, into `all`, whose memory is reused.
   void copy_all(core::ClusterState& all) const;
+  /// The same. Where most bodies sleep, copies of successive states share what has not changed.
+  void copy_all(core::ChangedState& copy);
 
   bool contains(core::BodyId id) const { return table_.find(id) != nullptr; }
   std::size_t body_count() const { return table_.size(); }
@@ -134,6 +137,7 @@ class Simulation {
   void list_changed_contacts();
   void show_state(const HostedBody& body, std::size_t place, double coming_kick_m_s);
   void erase(const std::vector<bool>& leaving);
+  void copy_changes(core::ChangedState& copy);
   void note_moved();
   void note(core::BodyId id);
   void note_new(core::BodyId id);
@@ -170,6 +174,8 @@ class Simulation {
   std::uint64_t unbearable_ = 0;  ///< number of setpoints not applied
   std::vector<core::BodySetpoint> new_setpoints_;
 
+  std::shared_ptr<const core::ClusterState> shared_copy_;
+  std::vector<const btPersistentManifold*> found_manifolds_;
   mutable std::vector<KeyedManifold> copied_manifolds_;  ///< of copy_all(), kept for its memory
   StateNotes notes_;
   KeptHash hash_;
@@ -178,6 +184,8 @@ class Simulation {
   int steps_since_snapshot_ = 0;
   std::vector<std::uint32_t> moved_;           ///< places of the bodies that the last step has moved
   std::vector<core::Contact> moved_contacts_;  ///< their contacts, in no order
+  std::size_t moved_count_ = 0;                ///< of bodies that the last step has moved
+  std::vector<std::pair<int, int>> touched_;   ///< pairs in contact of them, by user index
   std::vector<core::BodyId> kicked_;           ///< bodies of the snapshot with a coming kick, or not yet born
   bool snapshot_is_fresh_ = false;
   core::Snapshot snapshot_;

@@ -22,7 +22,7 @@ void Simulation::settle_blocks() {
     const core::Vec3 p_WB = from_bullet(body.rigid->getWorldTransform().getOrigin());
     if (!core::leaves(p_WB, place.block, settings_.block_m)) return;
     place.block = core::block_at(p_WB, settings_.block_m);
-    notes_.for_hash.note(body.id);
+    notes_.note_block(body.id);
     any_left = true;
   });
   if (!any_left && !mechanisms_changed) return;
@@ -32,7 +32,7 @@ void Simulation::settle_blocks() {
     if (place_of(rigid).block == of_first) continue;
     place_of(rigid).block = of_first;
     note_change(rigid);
-    notes_.for_hash.note(bound.body);
+    notes_.note_block(bound.body);
   }
   records_are_fresh_ = false;
 }

@@ -127,6 +127,7 @@ void Simulation::take_out(const Removal& removal) {
     }
   });
   const std::uint64_t severed = severed_contacts_;
+  notes_.give_up_copy();  // which contacts the bodies that it touched still have is not known
   release({&id, 1});
   severed_contacts_ = severed;  // the removed body's contacts do not count as severed
   removed_.push_back(removal);

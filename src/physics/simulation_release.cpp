@@ -69,28 +69,6 @@ core::ClusterState Simulation::peek(std::span<const core::BodyId> bodies) const 
   return std::move(copy(membership({&bodies, 1}), 1).clusters.front());
 }
 
-void Simulation::copy_all(core::ClusterState& all) const {
-  all.bodies.clear();
-  all.bodies.reserve(table_.size());
-  constexpr auto kAhead = static_cast<std::size_t>(kPrefetchDistance);
-  for (std::size_t i = 0; i < table_.size(); ++i) {
-    if (i + kAhead < table_.size()) {
-      prefetch_motion(*table_[i + kAhead].rigid);
-      prefetch_flags(*table_[i + kAhead].rigid);
-    }
-    all.bodies.push_back(table_[i].record());
-  }
-  core::Progress::mark();
-  copied_manifolds_.clear();
-  for_each_touching(world_.manifolds(), [&](const btPersistentManifold& manifold) {
-    copied_manifolds_.push_back({ref_of(*manifold.getBody0()), ref_of(*manifold.getBody1()), &manifold});
-  });
-  write_manifolds(copied_manifolds_, all);
-  all.joints.clear();
-  all.joint_values.clear();
-  joints_.append_to(all);
-}
-
 core::ClusterState Simulation::release(std::span<const core::BodyId> bodies) {
   return std::move(release({&bodies, 1}).front());
 }

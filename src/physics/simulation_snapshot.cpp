@@ -37,10 +37,11 @@ void Simulation::note_all() {
 /// Takes bodies out of the table. They have left Bullet's world already.
 void Simulation::erase(const std::vector<bool>& leaving) {
   for (std::size_t i = 0; i < leaving.size(); ++i) {
-    if (leaving[i]) hash_.drop(table_[i]);
+    if (!leaving[i]) continue;
+    hash_.drop(table_[i]);
+    notes_.note_gone(table_[i].id);
   }
   table_.erase(leaving);
-  notes_.note_gone();
   snapshot_is_fresh_ = records_are_fresh_ = false;
 }
 

@@ -1,35 +1,88 @@
 // The one place where a simulation notes which bodies it has changed. Each reader looks at the changed ones only, so a
-// sleeper costs nothing. A change that is not noted here is missing in snapshots and hashes.
+// sleeper costs nothing. A change that is not noted here is missing in snapshots, hashes and copies.
 #pragma once
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "core/body_state.h"
 #include "physics/changed_bodies.h"
 
 namespace aurasim::physics {
 
-struct StateNotes {
-  ChangedBodies for_snapshot;  ///< since the last snapshot; all: bodies have come, gone or been born
-  ChangedBodies for_hash;      ///< since the last hash
-  ChangedBodies for_step;      ///< since the last step began, and in it
+/// Two objects that have touched since a copy was made; ascending.
+using TouchedPair = std::pair<core::ObjectRef, core::ObjectRef>;
 
-  /// A body's pose, velocity, activation state or block may have changed.
+struct StateNotes {
+  ChangedBodies for_snapshot;      ///< since the last snapshot; all: bodies have come, gone or been born
+  ChangedBodies for_hash;          ///< since the last hash
+  ChangedBodies for_step;          ///< since the last step began, and in it
+  ChangedBodies for_copy;          ///< since the copy that later ones share
+  ChangedBodies parted;            ///< since that copy: the contacts of these bodies may have changed
+  std::vector<TouchedPair> pairs;  ///< since that copy: all pairs of a body of `parted` that are in contact are here
+  std::size_t known_pairs = 0;     ///< length of `pairs` when it was last sorted
+
+  /// A body's pose, velocity or activation state may have changed.
   void note(core::BodyId id) {
     for_snapshot.note(id);
     for_hash.note(id);
     for_step.note(id);
+    for_copy.note(id);
   }
-  /// All bodies may have changed.
+  void note_block(core::BodyId id) {
+    for_hash.note(id);
+    for_copy.note(id);
+  }
+  /// All bodies, contacts and joints may have changed.
   void note_all() {
-    for_snapshot.note_all();
-    for_hash.note_all();
-    for_step.note_all();
+    for (ChangedBodies* reader : {&for_snapshot, &for_hash, &for_step}) reader->note_all();
+    give_up_copy();
   }
   /// A body has come, or is born.
   void note_new(core::BodyId id) {
     for_snapshot.note_all();
     for_hash.note(id);
     for_step.note(id);
+    for_copy.note(id);
+    parted.note(id);
   }
-  void note_gone() { for_snapshot.note_all(); }
+  void note_gone(core::BodyId id) {
+    for_snapshot.note_all();
+    for_copy.note(id);
+    parted.note(id);
+  }
+  /// The last step has computed the body.
+  void note_moved(core::BodyId id) {
+    note(id);
+    parted.note(id);
+  }
+  void note_pair(core::ObjectRef a, core::ObjectRef b) {
+    if (parted.all()) return;
+    pairs.emplace_back(std::min(a, b), std::max(a, b));
+    if (pairs.size() > 2 * known_pairs + 256) sort_pairs();
+  }
+
+  /// No copy is shared any more.
+  void give_up_copy() {
+    for_copy.note_all();
+    parted.note_all();
+    pairs.clear();
+    known_pairs = 0;
+  }
+  /// A copy has been made that later ones share.
+  void begin_copy() {
+    for_copy.clear();
+    parted.clear();
+    pairs.clear();
+    known_pairs = 0;
+  }
+  void sort_pairs() {
+    std::ranges::sort(pairs);
+    const auto twins = std::ranges::unique(pairs);
+    pairs.erase(twins.begin(), twins.end());
+    known_pairs = pairs.size();
+  }
 };
 
 }  // namespace aurasim::physics

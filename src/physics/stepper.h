@@ -3,11 +3,10 @@
 
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
-
-#include "core/body_state.h"
 
 namespace aurasim::physics {
 
@@ -41,9 +40,9 @@ class World : public btDiscreteDynamicsWorld {
   /// True if only bodies of moved(), and their contacts, may have changed in the last step.
   virtual bool knows_moved() const { return false; }
   virtual std::span<btRigidBody* const> moved() const { return {}; }
-  /// Appends the pairs of bodies, by user index and a < b, that are in contact and of which one is among moved(). A
-  /// pair may come more than once.
-  virtual void add_contacts_of_moved(std::vector<core::Contact>&) const {}
+  /// Appends the pairs of objects, by user index and in ascending order, that are in contact and of which one is among
+  /// moved(). A pair may come more than once.
+  virtual void add_contacts_of_moved(std::vector<std::pair<int, int>>&) const {}
 };
 
 std::unique_ptr<World> make_stepper(const WorldParts& parts, const Settings& settings);

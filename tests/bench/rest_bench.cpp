@@ -126,7 +126,7 @@ void rest(benchmark::State& state) {
 BENCHMARK(rest)
     ->ArgNames({"boxes", "nodes"})
     ->ArgsProduct({{1000, 50000, 100000}, {1, 4}})
-    ->Iterations(200)
+    ->Iterations(600)
     ->Unit(benchmark::kMicrosecond);
 
 }  // namespace

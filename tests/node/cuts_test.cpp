@@ -119,12 +119,12 @@ TEST_F(CutsOfANode, OfTheOnesBeforeAConfirmedStateOnlyAFewAreKept) {
 }
 
 TEST_F(CutsOfANode, TheMemoryOfADroppedOneIsUsedAgain) {
-  EXPECT_EQ(cuts_.take_memory().bodies.capacity(), 0U);
+  EXPECT_EQ(cuts_.take_memory().now.bodies.capacity(), 0U);
   Cut large = cut_of(330);
-  large.bodies.bodies.resize(100);
+  large.bodies.now.bodies.resize(100);
   cuts_.keep(std::move(large));
   cuts_.back_to(300);
-  EXPECT_GE(cuts_.take_memory().bodies.capacity(), 100U);
+  EXPECT_GE(cuts_.take_memory().now.bodies.capacity(), 100U);
 }
 
 TEST_F(CutsOfANode, AnAlarmThatStandsForEverDoesNotKeepThemAll) {

@@ -1,6 +1,7 @@
 // A world in which all that can happen to bodies does, for tests of what must not show afterwards.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <random>
 #include <utility>
@@ -17,7 +18,8 @@ class GoesBack {
       : settings(settings_in), random(static_cast<std::uint64_t>(seed)), scene(make_scene(seed)), world(make_world()) {
     std::vector<core::BodyRecord> bodies = initial_records(scene);
     for (int i = 0; i < 3; ++i) {
-      const std::vector<core::BodyRecord> more = pile(random, 1000 + 100 * static_cast<std::uint64_t>(i), 9, 3.0 * i, 0);
+      const std::vector<core::BodyRecord> more =
+          pile(random, 1000 + 100 * static_cast<std::uint64_t>(i), 9, 3.0 * i, 0);
       bodies.insert(bodies.end(), more.begin(), more.end());
     }
     world.add(bodies);
@@ -75,9 +77,25 @@ class GoesBack {
     return made;
   }
 
+  void hand_over() {
+    std::vector<core::BodyId> leaving;
+    for (const core::BodyState& body : world.snapshot().bodies) {
+      if (pick(20) == 0) leaving.push_back(body.id);
+    }
+    handed_over_ = world.release(leaving);
+    handed_over_in_ = world.step_number();
+  }
+  /// Adopts what was handed over last, with the contacts that it had.
+  void take_back() {
+    const auto is_here = [this](const core::BodyRecord& body) { return world.contains(body.id); };
+    if (handed_over_in_ > world.step_number() || std::ranges::any_of(handed_over_.bodies, is_here)) return;
+    world.adopt(std::exchange(handed_over_, {}), handed_over_in_);
+    ++taken_back;
+  }
   std::uint64_t pick(std::uint64_t count) { return random() % count; }
 
   std::function<void()> after_step = [] {};
+  int taken_back = 0;
   const Settings settings;
   std::mt19937_64 random;
   std::vector<core::Order> orders;
@@ -120,13 +138,6 @@ class GoesBack {
   void take_in() {
     const core::BodyRecord record = newcomer();
     world.add({&record, 1});
-  }
-  void hand_over() {
-    std::vector<core::BodyId> leaving;
-    for (const core::BodyState& body : world.snapshot().bodies) {
-      if (pick(20) == 0) leaving.push_back(body.id);
-    }
-    world.release(leaving);
   }
   /// Another body with the same id.
   void replace() {
@@ -178,6 +189,20 @@ class GoesBack {
   }
 
   std::uint64_t next_id_ = 5000;
+  core::ClusterState handed_over_;
+  core::Step handed_over_in_ = 0;
 };
+
+/// Contacts and joints, to the last bit.
+inline bool same_rows(const core::ClusterState& a, const core::ClusterState& b) {
+  const auto same_manifold = [](const core::ManifoldRecord& x, const core::ManifoldRecord& y) {
+    return x.object0 == y.object0 && x.object1 == y.object1 && x.point_count == y.point_count;
+  };
+  const auto same_joint = [](const core::JointRecord& x, const core::JointRecord& y) {
+    return x.id == y.id && x.value_count == y.value_count;
+  };
+  return std::ranges::equal(a.manifolds, b.manifolds, same_manifold) && a.points == b.points &&
+         std::ranges::equal(a.joints, b.joints, same_joint) && a.joint_values == b.joint_values;
+}
 
 }  // namespace aurasim::physics::testing

@@ -23,17 +23,6 @@ constexpr int kSoftSeeds = 3, kOtherSeeds = 2;
 constexpr int kRounds = 5;  ///< times that each world goes back
 constexpr int kCompared = 200;
 
-bool same_rows(const ClusterState& a, const ClusterState& b) {
-  const auto same_manifold = [](const core::ManifoldRecord& x, const core::ManifoldRecord& y) {
-    return x.object0 == y.object0 && x.object1 == y.object1 && x.point_count == y.point_count;
-  };
-  const auto same_joint = [](const core::JointRecord& x, const core::JointRecord& y) {
-    return x.id == y.id && x.value_count == y.value_count;
-  };
-  return std::ranges::equal(a.manifolds, b.manifolds, same_manifold) && a.points == b.points &&
-         std::ranges::equal(a.joints, b.joints, same_joint) && a.joint_values == b.joint_values;
-}
-
 bool same_collisions(const std::vector<Collision>& a, const std::vector<Collision>& b) {
   return std::ranges::equal(a, b, [](const Collision& x, const Collision& y) {
     return x.step == y.step && x.a == y.a && x.b == y.b && x.penetration_m == y.penetration_m &&

@@ -69,11 +69,10 @@ class SoftWorld final : public World {
 
   bool knows_moved() const override { return true; }
   std::span<btRigidBody* const> moved() const override { return moved_; }
-  void add_contacts_of_moved(std::vector<core::Contact>& contacts) const override {
+  void add_contacts_of_moved(std::vector<std::pair<int, int>>& contacts) const override {
     for (const SoftTouch& touch : contacts_.touches()) {
-      const auto [a, b] = std::minmax(touch.a, touch.b);
-      if (a < 0 || touch.manifold == nullptr || touch.manifold->getNumContacts() == 0) continue;
-      contacts.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
+      if (touch.manifold == nullptr || touch.manifold->getNumContacts() == 0) continue;
+      contacts.emplace_back(std::min(touch.a, touch.b), std::max(touch.a, touch.b));
     }
   }
 

@@ -1,0 +1,80 @@
+// Copies of all bodies with all that physics remembers about them, to go back to or to save. Where most bodies sleep,
+// a copy has what has changed since an earlier one.
+#include <algorithm>
+#include <iterator>
+
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
+
+#include "core/progress.h"
+#include "physics/prefetch.h"
+#include "physics/simulation.h"
+
+namespace aurasim::physics {
+namespace {
+
+/// A copy is shared by later ones until more than this share of the bodies, and a few, have changed.
+constexpr std::size_t kOneIn = 8, kFew = 16;
+
+}  // namespace
+
+void Simulation::copy_all(core::ClusterState& all) const {
+  all.bodies.clear();
+  all.bodies.reserve(table_.size());
+  constexpr auto kAhead = static_cast<std::size_t>(kPrefetchDistance);
+  for (std::size_t i = 0; i < table_.size(); ++i) {
+    if (i + kAhead < table_.size()) {
+      prefetch_motion(*table_[i + kAhead].rigid);
+      prefetch_flags(*table_[i + kAhead].rigid);
+    }
+    all.bodies.push_back(table_[i].record());
+  }
+  core::Progress::mark();
+  copied_manifolds_.clear();
+  for_each_touching(world_.manifolds(), [&](const btPersistentManifold& manifold) {
+    copied_manifolds_.push_back({ref_of(*manifold.getBody0()), ref_of(*manifold.getBody1()), &manifold});
+  });
+  write_manifolds(copied_manifolds_, all);
+  joints_.copy_all(table_, all);
+}
+
+void Simulation::copy_all(core::ChangedState& copy) {
+  copy.before = nullptr;
+  copy.replaced.clear();
+  copy.parted.clear();
+  const auto is_few = [this](std::size_t count) { return count <= table_.size() / kOneIn + kFew; };
+  const bool shares =
+      shared_copy_ && !notes_.for_copy.all() && is_few(notes_.for_copy.most() / 2 + notes_.pairs.size() / 4);
+  if (shares) return copy_changes(copy);
+  notes_.give_up_copy();
+  shared_copy_ = nullptr;
+  if (!world_.knows_moved() || !is_few(moved_count_)) return copy_all(copy.now);
+  auto all = std::make_shared<core::ClusterState>();
+  copy_all(*all);
+  shared_copy_ = std::move(all);
+  notes_.begin_copy();
+  copy_changes(copy);
+}
+
+void Simulation::copy_changes(core::ChangedState& copy) {
+  copy.before = shared_copy_;
+  copy.now.bodies.clear();
+  notes_.for_copy.for_each(table_,
+                           [&](const HostedBody& body, std::size_t) { copy.now.bodies.push_back(body.record()); });
+  std::ranges::copy(notes_.for_copy.ids(), std::back_inserter(copy.replaced));
+  std::ranges::copy(notes_.parted.ids(), std::back_inserter(copy.parted));
+  copied_manifolds_.clear();
+  notes_.sort_pairs();
+  for (const auto& [one, other] : notes_.pairs) {
+    const btRigidBody *const a = find_object(one), *const b = find_object(other);
+    if (a == nullptr || b == nullptr) continue;
+    found_manifolds_.clear();
+    world_.add_manifolds(*a, *b, found_manifolds_);
+    for (const btPersistentManifold* manifold : found_manifolds_) {
+      copied_manifolds_.push_back({ref_of(*manifold->getBody0()), ref_of(*manifold->getBody1()), manifold});
+    }
+  }
+  write_manifolds(copied_manifolds_, copy.now);
+  joints_.copy_all(table_, copy.now);
+}
+
+}  // namespace aurasim::physics
