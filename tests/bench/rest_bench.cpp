@@ -69,6 +69,7 @@ lab::ClusterRules rules(bool checked) {
   rules.physics.solver = physics::Solver::kSoftStep;
   rules.physics.continuous = true;
   rules.hash_states = true;
+  rules.clock = node::PhaseClock::kThreadCpu;
   rules.neighbour_distance_m = 100;
   rules.shortest_frame_s = rules.longest_frame_s = 0.001;
   return rules;

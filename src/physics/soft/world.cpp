@@ -70,6 +70,7 @@ class SoftWorld final : public World {
   bool knows_moved() const override { return true; }
   std::span<btRigidBody* const> moved() const override { return moved_; }
   void add_contacts_of_moved(std::vector<std::pair<int, int>>& contacts) const override {
+    if (moved_.empty()) return;
     for (const SoftTouch& touch : contacts_.touches()) {
       if (touch.manifold == nullptr || touch.manifold->getNumContacts() == 0) continue;
       contacts.emplace_back(std::min(touch.a, touch.b), std::max(touch.a, touch.b));
