@@ -1,10 +1,14 @@
 // Threads of the soft step.
+#include <atomic>
+#include <chrono>
 #include <random>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "physics/joint_scenes.h"
+#include "physics/soft/threads.h"
 
 namespace aurasim::physics::testing {
 namespace {
@@ -50,6 +54,43 @@ void expect_same_bits(const core::Scene& scene, const std::vector<core::BodyReco
       ASSERT_EQ(world.records()[i].w_WB, alone[i].w_WB) << threads << " threads, body " << i;
     }
   }
+}
+
+TEST(SoftThreads, AreFewerForFewBodies) {
+  soft::Team team(8);
+  const auto workers_for = [&](std::size_t bodies) {
+    team.employ_for(bodies);
+    std::atomic<int> workers = 0;
+    team.side_by_side([&](const soft::Worker& worker) {
+      ++workers;
+      EXPECT_EQ(worker.of, team.employed());
+    });
+    return workers.load();
+  };
+  EXPECT_EQ(workers_for(0), 1);
+  EXPECT_EQ(workers_for(50), 1);
+  EXPECT_EQ(workers_for(100), 3);
+  EXPECT_EQ(workers_for(10000), 8);
+  EXPECT_EQ(workers_for(100), 3);
+}
+
+/// Longer than a thread looks again before it sleeps, and shorter.
+TEST(SoftThreads, AllComeBackAfterAnyTime) {
+  soft::Team team(3);
+  std::vector<int> turns(3, 0);
+  for (int time = 0; time < 200; ++time) {
+    if (time % 20 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    team.side_by_side([&](const soft::Worker& worker) {
+      for (int turn = 0; turn < 5; ++turn) {
+        int& own = turns[static_cast<std::size_t>(worker.number)];
+        ++own;
+        worker.wait();
+        for (const int other : turns) EXPECT_EQ(other, own);
+        worker.wait();
+      }
+    });
+  }
+  EXPECT_EQ(turns, std::vector<int>(3, 1000));
 }
 
 TEST(SoftThreads, TheirNumberChangesNoBit) {
