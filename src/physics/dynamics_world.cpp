@@ -177,6 +177,8 @@ bool DynamicsWorld::knows_moved() const { return bullet_->world->knows_moved(); 
 
 std::span<btRigidBody* const> DynamicsWorld::moved() const { return bullet_->world->moved(); }
 
+std::span<const btRigidBody* const> DynamicsWorld::called() const { return bullet_->world->called(); }
+
 void DynamicsWorld::add_contacts_of_moved(std::vector<std::pair<int, int>>& contacts) const {
   bullet_->world->add_contacts_of_moved(contacts);
 }

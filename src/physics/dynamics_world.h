@@ -60,6 +60,7 @@ class DynamicsWorld {
   /// See World in physics/stepper.h. Valid until bodies come or go.
   bool knows_moved() const;
   std::span<btRigidBody* const> moved() const;
+  std::span<const btRigidBody* const> called() const;
   void add_contacts_of_moved(std::vector<std::pair<int, int>>& contacts) const;
   /// Appends the manifolds of two objects that have a point.
   void add_manifolds(const btRigidBody& a, const btRigidBody& b, std::vector<const btPersistentManifold*>& found) const;

@@ -254,6 +254,9 @@ void Simulation::note_moved() {
     moved_.push_back(static_cast<std::uint32_t>(place));
     notes_.note_moved(table_[place].id);
   }
+  for (const btRigidBody* body : world_.called()) {
+    notes_.note(table_[static_cast<std::size_t>(body->getUserIndex())].id);
+  }
   touched_.clear();
   world_.add_contacts_of_moved(touched_);
   const auto ref = [this](int index) -> core::ObjectRef {

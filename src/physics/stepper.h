@@ -37,9 +37,11 @@ class World : public btDiscreteDynamicsWorld {
   /// Forgets what this world remembers of earlier states. Its bodies, pairs and joints stay.
   virtual void forget_past() {}
 
-  /// True if only bodies of moved(), and their contacts, may have changed in the last step.
+  /// True if only bodies of moved(), and their contacts, and bodies of called() may have changed in the last step.
   virtual bool knows_moved() const { return false; }
   virtual std::span<btRigidBody* const> moved() const { return {}; }
+  /// Sleepers of which nothing has changed but when they wake.
+  virtual std::span<const btRigidBody* const> called() const { return {}; }
   /// Appends the pairs of objects, by user index and in ascending order, that are in contact and of which one is among
   /// moved(). A pair may come more than once.
   virtual void add_contacts_of_moved(std::vector<std::pair<int, int>>&) const {}

@@ -62,6 +62,8 @@ class SoftWorld final : public World {
                 contact_impulses_);
     report_met();
     islands_.rest(step_s);
+    called_.clear();
+    for (const std::uint32_t slot : islands_.called()) called_.push_back(&islands_.body_at(slot));
     return 1;
   }
 
@@ -69,6 +71,7 @@ class SoftWorld final : public World {
 
   bool knows_moved() const override { return true; }
   std::span<btRigidBody* const> moved() const override { return moved_; }
+  std::span<const btRigidBody* const> called() const override { return called_; }
   void add_contacts_of_moved(std::vector<std::pair<int, int>>& contacts) const override {
     if (moved_.empty()) return;
     for (const SoftTouch& touch : contacts_.touches()) {
@@ -155,6 +158,7 @@ class SoftWorld final : public World {
   SoftIslands islands_;
   SoftContacts contacts_;
   std::vector<btRigidBody*> moved_;  ///< bodies that were awake at the start of the last step, or were woken in it
+  std::vector<const btRigidBody*> called_;  ///< sleepers that wake in the next step
   const std::vector<btRigidBody*>& moving_statics_;
   SoftStep step_;
   soft::Team& team_;
