@@ -189,7 +189,7 @@ double Launch::uncertainty() const {
 
 bool Launch::redoes() const {
   const bool on = time.redo == Redo::kOn || (time.redo == Redo::kAuto && time.sync == core::SyncMode::kDeterministic);
-  return on && regions.size() > 1;
+  return on && regions.size() > 1 && !is_coupled();
 }
 
 bool Launch::recovers() const { return survival.on_death == OnDeath::kRecover && regions.size() > 1; }
@@ -204,6 +204,7 @@ core::ControlRules Launch::control_rules() const {
 }
 
 int Launch::lookahead() const {
+  if (is_coupled()) return 1;
   if (time.lookahead) return *time.lookahead;
   const double steps = (tolerances.frame_s + tolerances.latency_s) * time.step_hz;
   return std::max(1, static_cast<int>(std::ceil(steps - 1e-9)));  // a tolerance of exactly one step is one step

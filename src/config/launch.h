@@ -21,6 +21,8 @@ namespace aurasim::config {
 enum class Pace { kWall, kNone };
 /// Whether states are put back and computed again. kAuto: if the run is to have the same bits as one node.
 enum class Redo { kAuto, kOn, kOff };
+/// What nodes exchange so that bodies of two regions can touch (docs/design.md, "Coupled regions").
+enum class Exchange { kAura, kCoupled };
 enum class OnDeath { kRecover, kStop };
 
 struct Time {
@@ -138,6 +140,7 @@ struct Launch {
   core::RegionMap regions = core::RegionMap::columns(1, 1);
   bool neighbour_distance_is_given = false;
   double neighbour_distance_m = 0;  ///< regions at most this far apart are neighbours; at least the zone
+  Exchange exchange = Exchange::kAura;
   Time time;
   Tolerances tolerances;
   Aura aura;
@@ -156,6 +159,8 @@ struct Launch {
   double block_m() const;
   /// U of docs/design.md, "Swept auras".
   double uncertainty() const;
+  /// True when contacts between bodies of several regions are solved by all of these regions.
+  bool is_coupled() const { return exchange == Exchange::kCoupled && regions.size() > 1; }
   /// True when every state is checked, and computed again where two bodies touched on two hosts.
   bool redoes() const;
   /// True when the run goes on after a death: it takes another node to keep the dead one's parts.

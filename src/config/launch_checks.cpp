@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
 #include "config/launch_keys.h"
+#include "core/block_owners.h"
 #include "core/sphere_aura.h"
 
 namespace aurasim::config {
@@ -84,6 +86,22 @@ double zone_m(const Launch& launch) {
   return top_speed_aura(launch).foreign_reach(2) + 2 * largest_radius_m(launch.scene);
 }
 
+/// Checks what only coupled regions need.
+void check_coupled(const Field& regions, const Launch& launch) {
+  if (launch.time.sync == core::SyncMode::kFreeRunning) {
+    regions.complain("exchange is coupled, allowed: aura where time.sync is free_running, because coupled nodes wait");
+  }
+  if (!launch.physics.looks_once()) {
+    regions.complain(fmt::format("exchange is coupled, allowed: aura with the solver {}", launch.physics.solver));
+  }
+  try {
+    core::BlockOwners(launch.regions, launch.block_m(), 0);
+  } catch (const core::BadRegionMap& problem) {
+    regions.complain(fmt::format("{}, allowed with exchange: coupled: regions at least as wide as physics.block",
+                                 problem.what()));
+  }
+}
+
 void check_regions(const Field& regions, std::optional<double> neighbour_distance_m, Launch& launch) {
   if (launch.lookahead() > kLargestLookahead) {
     regions.complain(fmt::format("tolerances and step_hz give a lookahead of {} steps, allowed: at most {}",
@@ -94,8 +112,9 @@ void check_regions(const Field& regions, std::optional<double> neighbour_distanc
     regions.complain("time.redo is on, allowed: auto or off where time.sync is free_running: nodes do not agree there");
     return;
   }
+  if (launch.is_coupled()) check_coupled(regions, launch);
   const double reach = reach_m(launch);
-  if (launch.regions.narrowest_m() < reach && !launch.redoes()) {
+  if (launch.regions.narrowest_m() < reach && !launch.redoes() && !launch.is_coupled()) {
     regions.complain(fmt::format(
         "the narrowest region is {:.4g} m wide, allowed: at least {:.4g} m, the reach of an aura: speed {} m/s, "
         "lookahead {}, contacts looked for at {} instants of a step, largest bounding radius {:.4g} m",
@@ -106,6 +125,7 @@ void check_regions(const Field& regions, std::optional<double> neighbour_distanc
   const double zone = zone_m(launch);
   launch.neighbour_distance_is_given = neighbour_distance_m.has_value();
   launch.neighbour_distance_m = neighbour_distance_m.value_or(zone);
+  if (launch.is_coupled()) launch.neighbour_distance_m = std::numeric_limits<double>::max();  // all are
   if (neighbour_distance_m && *neighbour_distance_m < zone) {
     regions.complain(
         fmt::format("neighbour_distance is {:.4g} m, allowed: at least {:.4g} m, the zone in which bodies "

@@ -294,6 +294,11 @@ const KeysOf<Launch>& launch_keys() {
       {
           required("scene", text("a scene file"), "what the world is made of; relative to this file"),
           required("regions", layout_value().with(regions_keys), "how the plane is divided among the nodes"),
+          optional("exchange", &Launch::exchange,
+                   choice<Exchange>({{"aura", Exchange::kAura}, {"coupled", Exchange::kCoupled}}),
+                   "how bodies of two regions touch. aura: one node gets both in time, which hides the latency between "
+                   "nodes; coupled: all their nodes solve the contact together, several messages a step, for nodes of "
+                   "one host or rack"),
           optional("time", &Launch::time, time_keys, "steps, and who waits for whom"),
           optional("tolerances", &Launch::tolerances, tolerances_keys, "what the run promises to itself"),
           optional("aura", &Launch::aura, aura_keys, "how far ahead nodes warn each other"),

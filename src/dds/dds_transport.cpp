@@ -1,6 +1,7 @@
 #include "dds/dds_transport.h"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -9,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "aurasim.h"
+#include "dds/dds_seams.h"
 #include "dds/endpoints.h"
 #include "messages/codec.h"
 
@@ -155,6 +157,7 @@ struct DdsTransport::Impl {
   Impl(Participant& participant, const TransportSettings& settings);
 
   Link* find(RegionId region);
+  bool is_lost(RegionId region);
   /// The process that is the node of the link's region. While no status names it: the process whose writer was matched
   /// first.
   std::optional<ProcessPrefix> node_of(const Link& link) const;
@@ -175,7 +178,8 @@ struct DdsTransport::Impl {
   Writer aura_writer;
   /// Links to settings.neighbours, then to other regions as they were requested.
   std::vector<std::unique_ptr<Link>> links;
-  wire::AuraBatch aura;  // reused for every sample
+  std::optional<DdsSeams> seams;  ///< if regions are coupled
+  wire::AuraBatch aura;           // reused for every sample
   wire::Migration migration;
   wire::MigrationAck ack;
   TransportCounters counters;
@@ -191,6 +195,23 @@ DdsTransport::Impl::Impl(Participant& participant_in, const TransportSettings& s
   for (const RegionId neighbour : settings.neighbours) {
     links.push_back(std::make_unique<Link>(participant.domain(), settings.region, neighbour, settings.life, wakeup));
   }
+  if (!settings.coupled) return;
+  SeamSettings seam_settings{settings.region, settings.region_count, settings.map_version, settings.life, {}, {}};
+  seam_settings.is_lost = [this](RegionId region) { return is_lost(region); };
+  seam_settings.is_node = [this](RegionId region, const ProcessPrefix& process) {
+    Link* const link = find(region);
+    const auto node = link == nullptr ? std::nullopt : node_of(*link);
+    return !node || *node == process;
+  };
+  seams.emplace(participant, seam_settings);
+}
+
+/// True if the process that was the region's node has gone or fallen silent.
+bool DdsTransport::Impl::is_lost(RegionId region) {
+  Link* const link = find(region);
+  if (link == nullptr) return false;
+  const RemoteWriter writer = link->aura_reader.watch().latest(node_of(*link));
+  return link->lost || writer.lost || (link->match != 0 && writer.order != link->match);
 }
 
 Link* DdsTransport::Impl::find(RegionId region) {
@@ -244,6 +265,9 @@ std::vector<std::string> DdsTransport::Impl::unmatched(const Link& link) const {
   need(link.migration_writer.reaches(link.region), "its migration reader");
   need(link.ack_reader.watch().any_matched(node), "its migration_ack writer");
   need(link.ack_writer.reaches(link.region), "its migration_ack reader");
+  if (seams) {
+    for (std::string& name : seams->unmatched(link.region)) missing.push_back(std::move(name));
+  }
   return missing;
 }
 
@@ -255,7 +279,7 @@ std::vector<std::string> DdsTransport::Impl::missing_neighbours(std::vector<Regi
       continue;
     }
     regions.push_back(link->region);
-    texts.push_back(missing.size() == kEndpointsOfALink
+    texts.push_back(missing.size() == kEndpointsOfALink + (seams ? 2 : 0)
                         ? fmt::format("region {} (nothing received from it)", value_of(link->region))
                         : fmt::format("region {} ({})", value_of(link->region), fmt::join(missing, ", ")));
   }
@@ -314,6 +338,8 @@ DdsTransport::DdsTransport(Participant& participant, const TransportSettings& se
 
 DdsTransport::~DdsTransport() = default;
 
+core::SeamMail* DdsTransport::seams() { return impl_->seams ? &*impl_->seams : nullptr; }
+
 void DdsTransport::wait_until_matched(std::chrono::nanoseconds time_out) {
   const auto deadline = std::chrono::steady_clock::now() + time_out;
   while (!all_matched()) {
@@ -337,7 +363,7 @@ bool DdsTransport::all_matched() const {
 
 std::size_t DdsTransport::found() const {
   std::size_t found = 0;
-  for (const auto& link : impl_->links) found += kEndpointsOfALink - impl_->unmatched(*link).size();
+  for (const auto& link : impl_->links) found += kEndpointsOfALink + (impl_->seams ? 2 : 0) - impl_->unmatched(*link).size();
   return found;
 }
 

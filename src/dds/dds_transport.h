@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/ids.h"
+#include "core/seam_mail.h"
 #include "dds/participant.h"
 #include "messages/wire_error.h"
 #include "transport/transport.h"
@@ -29,7 +30,8 @@ struct TransportSettings {
   std::uint32_t prototype_count = 0xffff'ffffU;
   std::uint32_t static_count = 0xffff'ffffU;
   std::uint32_t joint_count = 0xffff'ffffU;
-  double block_m = 0;  ///< side of the blocks; 0: not known, so blocks are not checked
+  bool coupled = false;  ///< regions are coupled: seams() is there, and all other regions are neighbours
+  double block_m = 0;    ///< side of the blocks; 0: not known, so blocks are not checked
   /// True when that region's node is alive but has been computing one step for long. Waiting to be matched by it then
   /// goes on until that step is done. Empty: no node counts as busy.
   std::function<bool(core::RegionId)> is_busy = {};
@@ -90,6 +92,9 @@ class DdsTransport final : public transport::Transport {
   void send(const core::Outbox& outbox) override;
   /// Returns when something arrived, when a neighbour was matched, unmatched or fell silent, or at the time-out.
   void wait_for_arrival(std::chrono::nanoseconds time_out) override;
+
+  /// Parcels in the middle of a step; null unless TransportSettings::coupled.
+  core::SeamMail* seams();
 
   const TransportCounters& counters() const;
   /// Neighbours whose samples were refused, with the number of refused samples.

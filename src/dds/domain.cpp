@@ -100,6 +100,7 @@ void Domain::register_types() {
       TypeSupport(new messages::GuardedType<wire::MeshShapePubSubType>()),
       TypeSupport(new messages::GuardedType<wire::ClusterGraphPubSubType>()),
       TypeSupport(new messages::GuardedType<wire::CheckpointPubSubType>()),
+      TypeSupport(new messages::GuardedType<wire::SeamParcelPubSubType>()),
       TypeSupport(new messages::GuardedType<wire::SetpointsPubSubType>()),
       TypeSupport(new messages::GuardedType<wire::InterestPubSubType>()),
       TypeSupport(new messages::GuardedType<wire::ObservationPubSubType>()),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 
@@ -44,6 +45,7 @@ VirtualCluster::VirtualCluster(const core::Scene& scene, const core::RegionMap& 
     : rules_(rules),
       map_(map),
       network_(listeners(map, rules.neighbour_distance_m), rules.network, rules.seed),
+      seams_(map.size()),
       random_(rules.seed * 0x9E3779B97F4A7C15ull + 1) {
   [[maybe_unused]] static const bool kept = keep_freed_memory();
   for (const BrokenLink& link : rules.broken_links) {
@@ -53,6 +55,7 @@ VirtualCluster::VirtualCluster(const core::Scene& scene, const core::RegionMap& 
   node::NodeSetup setup = node_setup(rules);
   for (std::uint32_t r = 0; r < map_.size(); ++r) {
     setup.protocol.self = core::RegionId{r};
+    if (rules.coupled) setup.seams = &seams_.of(core::RegionId{r});
     Member& member = members_.emplace_back();
     transport::Transport& mail = post_ ? post_->endpoint(core::RegionId{r}) : network_.endpoint(core::RegionId{r});
     member.node = std::make_unique<node::Node>(setup, scene, map_, mail);
@@ -101,7 +104,38 @@ std::string VirtualCluster::who_waits() const {
   return text;
 }
 
+/// Coupled nodes compute a state all at once, each in a thread of its own, and then their events come one by one.
+std::optional<VirtualCluster::Event> VirtualCluster::next_of_coupled() {
+  if (computed_.empty() && !compute_all()) return std::nullopt;
+  const Event event = computed_.front();
+  computed_.pop_front();
+  return event;
+}
+
+bool VirtualCluster::compute_all() {
+  double due = 0;
+  for (const Member& member : members_) {
+    if (!member.is_alive || holds(member)) return false;
+    due = std::max(due, due_s(member));
+  }
+  network_.advance_to(std::max(due, network_.now_s()));
+  const auto is_ready = [](Member& member) { return member.node->ready(); };
+  while (!std::ranges::all_of(members_, is_ready)) {
+    if (!std::isfinite(network_.next_arrival_s())) return false;
+    network_.advance_to(std::max(network_.next_arrival_s(), network_.now_s()));
+  }
+  std::vector<std::function<void()>> works;
+  for (Member& member : members_) works.push_back([&member] { member.node->step(); });
+  seams_.run(works);
+  for (Member& member : members_) {
+    member.free_s = network_.now_s();
+    computed_.push_back({member.node->region(), &member.node->report()});
+  }
+  return true;
+}
+
 std::optional<VirtualCluster::Event> VirtualCluster::try_next() {
+  if (rules_.coupled) return next_of_coupled();
   for (;;) {
     double event_s = std::numeric_limits<double>::infinity();
     Member* chosen = nullptr;

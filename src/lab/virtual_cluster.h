@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -16,6 +17,7 @@
 #include "lab/wire_post.h"
 #include "node/node.h"
 #include "node/timed.h"
+#include "transport/memory_seams.h"
 #include "transport/memory_transport.h"
 
 namespace aurasim::lab {
@@ -35,6 +37,7 @@ struct BrokenLink {
 struct ClusterRules {
   core::AuraRules aura;
   core::SyncMode sync = core::SyncMode::kBounded;
+  bool coupled = false;  ///< regions are coupled (physics/coupling.h): all nodes compute a state at once
   physics::Settings physics;  ///< steps and substeps are taken from `aura` instead
   core::ControlRules control;
   double neighbour_distance_m = kEverywhere_m;
@@ -91,6 +94,7 @@ class VirtualCluster {
   double now_s() const { return network_.now_s(); }
 
   std::size_t size() const { return members_.size(); }
+  bool is_coupled() const { return rules_.coupled; }
   const node::Node& node(std::size_t region) const { return *members_[region].node; }
   /// Mutable access, to give orders between two events. Region 0 is the lead.
   node::Node& node(std::size_t region) { return *members_[region].node; }
@@ -122,6 +126,8 @@ class VirtualCluster {
   Member& member(core::RegionId region) { return members_[core::value_of(region)]; }
 
   bool holds(const Member& member) const;
+  std::optional<Event> next_of_coupled();
+  bool compute_all();
   std::string who_waits() const;
   bool all_stand();
   double due_s(const Member& member) const;
@@ -132,6 +138,8 @@ class VirtualCluster {
   core::RegionMap map_;
   transport::MemoryNetwork network_;
   std::optional<WirePost> post_;
+  transport::MemorySeams seams_;
+  std::deque<Event> computed_;  ///< by coupled nodes
   std::vector<Member> members_;
   bool stands_ = false;  ///< nodes in their last state check it, and compute on if it has to be computed again
   std::uint64_t random_;

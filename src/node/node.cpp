@@ -53,6 +53,7 @@ Node::Node(const NodeSetup& setup, const core::Scene& scene, const core::RegionM
   for (const core::Setpoints& recorded : setup_.recorded) world_.controls().recall(recorded);
   expect_recorded_moves();
   protocol_.emplace(setup.protocol, map, *clearance_);
+  if (setup.seams != nullptr) couple();
 }
 
 /// Announces the bodies that appear `birth_notice` steps after `state`; those of orders appear in the state that the
@@ -80,6 +81,7 @@ void Node::take_mail() {
 
 bool Node::ready() {
   take_mail();
+  if (is_broken_) return false;
   order_redo();
   return redo_is_due() || protocol_->ready(current_step() + 1);
 }
@@ -141,13 +143,26 @@ void Node::compute_step() {
     apply(*changes);
     announce_births(n);
     core::Progress::mark();
-    world_.step();
+    compute_state(n);
     core::Progress::mark();
+    if (owners_) note_moved();
     note_removals();
     note_effects();
     note_moves();
   }
   finish_state();
+}
+
+/// Where regions are coupled, another one may be lost in the middle of the state. Then this node has no state until the
+/// run goes back.
+void Node::compute_state(core::Step n) {
+  if (owners_) setup_.seams->begin(setup_.protocol.generation, n);
+  try {
+    world_.step();
+  } catch (const core::SeamsBroken&) {
+    is_broken_ = true;
+    throw;
+  }
 }
 
 void Node::apply(const core::Changes& changes) {
@@ -221,7 +236,9 @@ void Node::finish_state() {
   const std::vector<core::Departure>* departures = nullptr;
   {
     const Timed timed(report_.durations.protocol_s, setup_.clock);
-    departures = &protocol_->observe(*snapshot);
+    core::Snapshot nothing;  // where regions are coupled, no body is the protocol's concern
+    nothing.step = snapshot->step;
+    departures = &protocol_->observe(owners_ ? nothing : *snapshot);
   }
   {
     const Timed timed(report_.durations.watch_s, setup_.clock);
@@ -240,9 +257,9 @@ void Node::finish_state() {
 }
 
 /// Counts late and missed collisions. There are none in a run with redo, which checks every state and computes it again
-/// if needed.
+/// if needed, and none where regions are coupled.
 void Node::watch_collisions(const core::Snapshot& snapshot) {
-  if (protocol_->computes_again()) {
+  if (protocol_->computes_again() || owners_) {
     for (const physics::Collision& collision : world_.collisions()) report_.collisions.push_back({collision});
     return;
   }
@@ -265,7 +282,7 @@ void Node::release(std::span<const core::Departure> departures) {
 }
 
 void Node::hand_over(const core::Departure& departure, core::ClusterState cluster) {
-  note_left_behind(cluster);
+  note_left_behind(cluster.bodies, current_step());
   for (const core::BodyRecord& body : cluster.bodies) {
     HandOffRow& row = report_.departures.emplace_back();
     row.stamp = current_step();

@@ -37,6 +37,8 @@ struct NodeSetup {
   std::vector<core::Setpoints> recorded;  ///< setpoints of an earlier run; each is received again in its state
   bool hash_states = true;
   PhaseClock clock = PhaseClock::kWall;
+  /// If set, regions are coupled (physics/coupling.h), and there are no auras. Has to outlive the node.
+  core::SeamMail* seams = nullptr;
 };
 
 /// Whether the records already hold the state that a run goes on from, with all bodies that joined it late.
@@ -61,6 +63,7 @@ class Node {
   bool ready();
 
   /// Computes the next state, or goes back to an earlier one where the run is to be computed again. Only when ready().
+  /// Throws core::SeamsBroken if a coupled region is lost on the way; from then on this node is never ready().
   const StepReport& step();
   /// Reports that have become final with the last step, in order. Without AuraRules::redo this is the report of the
   /// last step. With it, a report is final once no alarm can question its state any more, and a hash is once no body
@@ -165,11 +168,13 @@ class Node {
   void execute_saved(const core::WorldCut& world);
   core::ClusterState our_part();
   std::vector<core::RegionId> hosts_at_start(core::Snapshot all);
+  void couple();
 
   // A step (node.cpp)
   void compute_and_keep();
   void take_mail();
   void compute_step();
+  void compute_state(core::Step n);
   void apply(const core::Changes& changes);
   void adopt(const core::Adoption& adoption, std::uint32_t nth);
   void announce_births(core::Step state);
@@ -183,12 +188,13 @@ class Node {
   void count(const core::Snapshot& snapshot);
   void note_removals();
   void note_arrivals(const core::Adoption& adoption);
+  void note_moved();
   void note_made_up_contacts();
   bool stays(core::BodyId id) const;
   void note_effects();
   void note_effects_anew();
   void note_effects_on_arrivals();
-  void note_left_behind(const core::ClusterState& cluster);
+  void note_left_behind(std::span<const core::BodyRecord> bodies, core::Step last);
 
   // History (node_redo.cpp, node_cut.cpp)
   bool may_go_back() const;
@@ -241,6 +247,7 @@ class Node {
   transport::Transport* transport_;
   std::unique_ptr<core::ClearanceQuery> clearance_;
   std::optional<core::Protocol> protocol_;  ///< never empty; replaced when the run goes back or the map changes
+  std::optional<core::BlockOwners> owners_;  ///< if regions are coupled
   physics::RegionWorld world_;
   CollisionWatch watch_;
   core::Inbox inbox_;
@@ -250,6 +257,7 @@ class Node {
   SavedStates saved_;
   HeldReports held_;
   std::optional<Beginning> beginning_;
+  bool is_broken_ = false;  ///< a coupled region was lost in the middle of a step
   bool settled_ = false;
   bool is_observed_ = false;
   std::vector<core::Order> redos_;  ///< ordered and not carried out yet, in sequence

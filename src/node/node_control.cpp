@@ -87,14 +87,13 @@ void Node::note_effects_on_arrivals() {
   }
 }
 
-/// Reports that the setpoints of a leaving body end, because its next host may have received fewer of them. Drives of
-/// joints go with the body.
-void Node::note_left_behind(const core::ClusterState& cluster) {
+/// Reports that the setpoints of leaving bodies end after state `last`, because their next host may have received fewer
+/// of them. Drives of joints go with the body.
+void Node::note_left_behind(std::span<const core::BodyRecord> bodies, core::Step last) {
   const core::ControlLog& controls = world_.controls();
-  const core::Step n = current_step();
-  for (const core::BodyRecord& body : cluster.bodies) {
-    controls.for_each_of(body.id, n, [&](core::Quantity quantity, const auto& value, bool) {
-      if (value) report_.effects.bodies.push_back({n + 1, {body.id, quantity, {}}});
+  for (const core::BodyRecord& body : bodies) {
+    controls.for_each_of(body.id, last, [&](core::Quantity quantity, const auto& value, bool) {
+      if (value) report_.effects.bodies.push_back({last + 1, {body.id, quantity, {}}});
     });
   }
 }

@@ -57,6 +57,31 @@ void Node::note_arrivals(const core::Adoption& adoption) {
   if (!protocol_->computes_again()) watch_.join(adoption);  // else nobody looks for late collisions
 }
 
+/// Reports the bodies that coupled regions have handed over at the beginning of the step.
+void Node::note_moved() {
+  const auto row_of = [this](const physics::Moved& moved) {
+    HandOffRow row;
+    row.stamp = current_step() - 1;
+    row.body = moved.body.id;
+    row.reason = core::HandOffReason::kBoundaryTraversal;
+    return row;
+  };
+  for (const physics::Moved& moved : world_.left()) {
+    HandOffRow& row = report_.departures.emplace_back(row_of(moved));
+    row.epoch = moved.body.epoch + 1;
+    row.source = region(), row.destination = moved.other;
+    row.touched = touches_.take(moved.body.id);
+    report_.departed.push_back(moved.body);
+    note_left_behind({&moved.body, 1}, row.stamp);
+  }
+  for (const physics::Moved& moved : world_.arrived()) {
+    HandOffRow& row = report_.arrivals.emplace_back(row_of(moved));
+    row.joined = current_step();
+    row.epoch = moved.body.epoch;
+    row.source = moved.other, row.destination = region();
+  }
+}
+
 void Node::count(const core::Snapshot& snapshot) {
   report_.step = snapshot.step;
   report_.bodies = snapshot.born;

@@ -76,6 +76,16 @@ const StepReport& Node::take_map(const core::ProtocolSettings& settings, const c
   return report_;
 }
 
+void Node::couple() {
+  std::vector<double> radii_m;
+  for (const core::Prototype& kind : scene().prototypes) {
+    radii_m.push_back(core::bounding_radius(scene().shapes[kind.shape].shape));
+  }
+  const double side_m = setup_.physics.block_m;
+  owners_.emplace(*map_, side_m, core::usual_reach_m(radii_m, side_m));
+  world_.couple({region(), &*owners_, setup_.seams});
+}
+
 /// Puts this region's part of a state into the world, with the clusters that had been sent here in that state or
 /// before and join later.
 void Node::put_in(const Cut& part) {
@@ -141,7 +151,7 @@ core::ClusterState Node::our_part() {
   for (std::size_t i = 0; i < hosts.size(); ++i) {
     if (hosts[i] == region()) ours.push_back(all.bodies[i].id);
   }
-  core::ClusterState part = world_.peek(ours);
+  core::ClusterState part = owners_ ? world_.peek_whole(ours) : world_.peek(ours);
   for (core::BodyRecord& body : part.bodies) body.epoch += first_epoch_;
   return part;
 }
@@ -155,6 +165,11 @@ std::vector<core::RegionId> Node::hosts_at_start(core::Snapshot all) {
     if (b == all.bodies.end() || a->id != pair.a || b->id != pair.b) continue;
     all.joints.push_back(
         {static_cast<std::uint32_t>(a - all.bodies.begin()), static_cast<std::uint32_t>(b - all.bodies.begin())});
+  }
+  if (owners_) {
+    std::vector<core::RegionId> hosts;
+    for (const core::BodyRecord& body : world_.peek_all().bodies) hosts.push_back(owners_->owner(body.block));
+    return hosts;
   }
   std::vector<core::RegionId> hosts = core::assign_hosts(*map_, setup_.protocol.aura, *clearance_, all);
   setup_.protocol.related.clear();

@@ -69,7 +69,9 @@ core::Heard Node::order_move(const core::StaticSetpoint& wanted, core::Step at_s
     return core::Heard::kInTime;
   if (is_changing_ || !statics_.may_order(current_step())) return core::Heard::kRefused;
   const bool at_once = at_step != 0 && believes_programs();
-  const core::Step earliest = at_once ? current_step() + 1 : protocol_->earliest_effect();
+  // Where regions are coupled, nobody foresees what a static will meet.
+  const core::Step agreed = owners_ ? protocol_->earliest_agreement() : protocol_->earliest_effect();
+  const core::Step earliest = at_once ? current_step() + 1 : agreed;
   const bool is_late = at_step != 0 && at_step < earliest;
   if (is_late && setup_.control.late == core::LateSetpoint::kDropped) return core::Heard::kLate;
   const core::Order& given = give_move(wanted, std::max(at_step, earliest), request);

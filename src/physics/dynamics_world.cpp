@@ -16,6 +16,7 @@
 #include "physics/contact_pairs.h"
 #include "physics/dispatcher.h"
 #include "physics/inner_edges.h"
+#include "physics/moving_body.h"
 #include "physics/moving_static.h"
 #include "physics/prefetch.h"
 #include "physics/soft/threads.h"
@@ -25,6 +26,9 @@
 
 namespace aurasim::physics {
 namespace {
+
+/// Collision group of guests. They touch only bodies that this world hosts.
+constexpr int kGuests = 1 << 6;
 
 /// Keeps a body awake during its own lifetime, because Bullet skips pairs of sleepers.
 class Awake {
@@ -103,7 +107,11 @@ DynamicsWorld::~DynamicsWorld() {
 
 void DynamicsWorld::insert(btRigidBody& body, int rank, bool collides) {
   bullet_->broadphase.number_next(rank);
-  bullet_->world->addRigidBody(&body);
+  if (is_guest(body)) {
+    bullet_->world->addRigidBody(&body, kGuests, btBroadphaseProxy::DefaultFilter);
+  } else {
+    bullet_->world->addRigidBody(&body);
+  }
   if (is_moving_static(body)) begin_moving(body);
   if (!collides) {  // leaves all collision groups, and removes pairs made on insertion
     btBroadphaseProxy* const proxy = body.getBroadphaseHandle();
@@ -163,6 +171,8 @@ void DynamicsWorld::connect(btTypedConstraint& joint, int order, bool bodies_col
 }
 
 void DynamicsWorld::disconnect(btTypedConstraint& joint) { bullet_->world->removeConstraint(&joint); }
+
+void DynamicsWorld::couple(const Coupling& coupling) { bullet_->world->couple(coupling); }
 
 void DynamicsWorld::step(double substep_s) {
   const btScalar dt = static_cast<btScalar>(substep_s);

@@ -23,6 +23,7 @@ namespace aurasim::physics {
 namespace soft {
 class Team;
 }
+struct Coupling;
 
 class DynamicsWorld {
  public:
@@ -52,6 +53,9 @@ class DynamicsWorld {
   /// If `bodies_collide` is false, the two bodies must not have contacts yet.
   void connect(btTypedConstraint& joint, int order, bool bodies_collide);
   void disconnect(btTypedConstraint& joint);
+
+  /// See RegionWorld::couple().
+  void couple(const Coupling& coupling);
 
   void step(double substep_s);
 

@@ -2,13 +2,14 @@
 
 #include <span>
 
+#include "physics/moving_body.h"
 #include "physics/state_hash.h"
 
 namespace aurasim::physics {
 
 std::uint64_t KeptHash::sum(BodyTable& table, ChangedBodies& changed) {
   changed.for_each(table, [this](HostedBody& body, std::size_t) {
-    if (!body.born) return;
+    if (!body.born || is_guest(*body.rigid)) return;
     bodies_[count_] = &body;
     records_[count_++] = body.record();
     if (count_ == kAtOnce) renew();

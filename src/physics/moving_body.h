@@ -17,6 +17,11 @@ struct BodyPlace {
   double radius_m = 0;    ///< of a ball around the centre of mass that holds the shape
   bool is_bound = false;  ///< its block is that of another body, which is the first of its mechanism
   std::vector<std::uint32_t>* changes = nullptr;  ///< of SoftIslands, while the body is in its world
+  core::BodyId id{};
+  // Where regions are coupled (physics/coupling.h):
+  bool is_guest = false;  ///< another region hosts it
+  core::RegionId host{};  ///< of a guest
+  std::uint64_t met = 0;  ///< of a guest: the last meeting that it came to
 };
 
 class MovingBody final : public btRigidBody {
@@ -45,5 +50,7 @@ inline void note_change(const btRigidBody& body) {
   if (place == nullptr || place->changes == nullptr) return;
   place->changes->push_back(static_cast<std::uint32_t>(body.getUserIndex3()));
 }
+/// False for statics.
+inline bool is_guest(const btRigidBody& body) { return !body.isStaticObject() && place_of(body).is_guest; }
 
 }  // namespace aurasim::physics

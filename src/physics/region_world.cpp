@@ -72,6 +72,10 @@ core::ClusterState RegionWorld::peek(std::span<const core::BodyId> bodies) const
   return impl_->simulation.peek(bodies);
 }
 
+core::ClusterState RegionWorld::peek_whole(std::span<const core::BodyId> bodies) const {
+  return std::move(impl_->simulation.copy_whole({&bodies, 1}).front());
+}
+
 core::ClusterState RegionWorld::peek_all() const {
   core::ClusterState all;
   copy_all(all);
@@ -158,6 +162,11 @@ std::span<const core::BodyRecord> RegionWorld::records() { return impl_->simulat
 std::uint64_t RegionWorld::hash_sum() { return impl_->simulation.hash_sum(); }
 
 const std::vector<Collision>& RegionWorld::collisions() const { return impl_->collisions; }
+
+void RegionWorld::couple(const Coupling& coupling) { impl_->simulation.couple(coupling); }
+
+const std::vector<Moved>& RegionWorld::arrived() const { return impl_->simulation.arrived(); }
+const std::vector<Moved>& RegionWorld::left() const { return impl_->simulation.left(); }
 
 void RegionWorld::watch_contacts(bool wanted) {
   impl_->simulation.watch_contacts(wanted);

@@ -15,6 +15,7 @@
 #include "core/order.h"
 #include "core/scene.h"
 #include "core/static_moves.h"
+#include "physics/coupling.h"
 #include "physics/results.h"
 #include "physics/settings.h"
 
@@ -59,6 +60,9 @@ class RegionWorld {
 
   /// The record that release() would return, of bodies that stay (tests, key frames, state hash).
   core::ClusterState peek(std::span<const core::BodyId> bodies) const;
+
+  /// Like peek(), with the contacts between these bodies and others.
+  core::ClusterState peek_whole(std::span<const core::BodyId> bodies) const;
 
   /// The record of all bodies, including those not yet born.
   core::ClusterState peek_all() const;
@@ -113,6 +117,15 @@ class RegionWorld {
   /// First contacts found while the last step was computed, and those of clusters that have caught up since the step
   /// before (with an earlier `step`). Ordered by (a, b, step).
   const std::vector<Collision>& collisions() const;
+
+  /// Couples this world with those of other regions: from the next step on, each body is hosted by the owner of its
+  /// block, and step() exchanges parcels with the other regions, which have to step, too. Only while there are no
+  /// bodies. Throws std::invalid_argument for a solver other than the soft step. step() then also throws BadParcel
+  /// (physics/parcel.h).
+  void couple(const Coupling& coupling);
+  /// Bodies that came in the last step, and bodies that left in it. Ascending by id. Those that came have their new epochs.
+  const std::vector<Moved>& arrived() const;
+  const std::vector<Moved>& left() const;
 
   /// Switches the sums of contact impulses on or off, from the next step on. It changes no bit of the simulation.
   void watch_contacts(bool wanted);

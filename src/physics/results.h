@@ -55,4 +55,10 @@ struct MadeUpContacts {
 /// cluster's bodies in state `step`, in ascending order of id.
 using CatchUpListener = std::function<void(core::Step step, std::span<const core::BodyRecord> bodies)>;
 
+/// A body that coupled regions handed over in the last step. It left in the state before.
+struct Moved {
+  core::BodyRecord body;   ///< in the state before the step, with what orders of the step have done to it
+  core::RegionId other{};  ///< where it came from or went to
+};
+
 }  // namespace aurasim::physics

@@ -31,6 +31,9 @@ btScalar half_thickness(const btCollisionShape& shape) {
 
 constexpr std::uint64_t kRoomForStatics = 1U << 20U;
 
+/// A body that this world hosts: neither static nor a guest.
+bool is_ours(const btRigidBody& body) { return !body.isStaticObject() && !is_guest(body); }
+
 [[noreturn]] void refuse_twin(core::BodyId id) {
   throw std::invalid_argument("body " + std::to_string(core::value_of(id)) + " is here already");
 }
@@ -69,6 +72,11 @@ int Simulation::rank_of(core::BodyId id) const {
   return static_cast<int>(core::value_of(id) + kRoomForStatics + 1);
 }
 
+bool Simulation::contains(core::BodyId id) const {
+  const HostedBody* const body = table_.find(id);
+  return body != nullptr && !is_guest(*body->rigid);
+}
+
 void Simulation::start_at(core::Step step) {
   assert(table_.size() == 0);
   step_ = step;
@@ -79,7 +87,7 @@ void Simulation::start_at(core::Step step) {
 }
 
 HostedBody Simulation::make_body(const core::BodyRecord& record) {
-  if (contains(record.id)) refuse_twin(record.id);
+  if (table_.find(record.id) != nullptr) refuse_twin(record.id);
   rank_of(record.id);  // or throws
   const core::Prototype& prototype = scene_->prototypes.at(core::value_of(record.prototype));
   auto info = construction_of(prototype.mass_kg, shapes_->shape(prototype.shape), shapes_->inertia(record.prototype),
@@ -110,6 +118,7 @@ void Simulation::set_motion(btRigidBody& rigid, const core::BodyRecord& record) 
   // The soft step stops a sleeper that comes with a velocity.
   const bool is_still = record.v_WB.isZero(0) && record.w_WB.isZero(0);
   will_stop_sleepers_ = will_stop_sleepers_ || (!rigid.isActive() && !is_still);
+  place_of(rigid).id = record.id;
   place_of(rigid).block = record.block.is_known() ? record.block : core::block_at(record.p_WB, settings_.block_m);
 }
 
@@ -141,6 +150,7 @@ void Simulation::insert_born() {
     note_new(body.id);
     world_.insert(*body.rigid, rank_of(body.id), scene_->prototypes[core::value_of(body.prototype)].collides);
     body.born = true;
+    if (is_guest(*body.rigid)) continue;
     joints_.connect(body.id, table_, world_);
   }
 }
@@ -188,7 +198,8 @@ void Simulation::restore_pair(const core::ClusterState& cluster, std::span<const
   const core::ManifoldRecord& any = cluster.manifolds[records.front()];
   btRigidBody* const a = find_object(any.object0);
   btRigidBody* const b = find_object(any.object1);
-  if (a == nullptr || b == nullptr || a == b || (a->isStaticObject() && b->isStaticObject())) return;
+  if (coupling_ != nullptr && (a == nullptr || b == nullptr)) return restore_later(cluster, records);
+  if (a == nullptr || b == nullptr || a == b || !(is_ours(*a) || is_ours(*b))) return;
   core::Progress::mark();
   world_.make_manifolds(*a, *b, of_pair_);
   for (const std::uint32_t index : records) {
@@ -212,7 +223,9 @@ void Simulation::restore_pair(const core::ClusterState& cluster, std::span<const
 
 std::vector<core::BodyId> Simulation::body_ids() const {
   std::vector<core::BodyId> ids;
-  for (const HostedBody& body : table_.bodies()) ids.push_back(body.id);
+  for (const HostedBody& body : table_.bodies()) {
+    if (!is_guest(*body.rigid)) ids.push_back(body.id);
+  }
   return ids;
 }
 
@@ -224,6 +237,7 @@ void Simulation::step() {
   start_moving_statics();
   for (int i = 0; i < settings_.looks(); ++i) {
     push();
+    if (coupling_ != nullptr) meet_neighbours();
     joints_.follow();
     world_.step(settings_.step_s / settings_.looks());
     core::Progress::mark();
@@ -273,6 +287,7 @@ void Simulation::collect_collisions() {
   for (const FirstContact& found : world_.first_contacts().found()) {
     if (!std::isfinite(found.penetration_m + found.relative_speed_m_s)) continue;  // one of the bodies is breaking down
     const auto [a, b] = std::minmax(found.body0, found.body1);
+    if (is_guest(*table_[static_cast<std::size_t>(a)].rigid)) continue;  // its host reports
     collisions_.push_back({step_, table_[static_cast<std::size_t>(a)].id, table_[static_cast<std::size_t>(b)].id,
                            found.penetration_m, found.relative_speed_m_s, from_bullet(found.p_O)});
   }

@@ -15,7 +15,9 @@
 #include "physics/body_table.h"
 #include "physics/bounds.h"
 #include "physics/bullet_convert.h"
+#include "physics/coupling.h"
 #include "physics/dynamics_world.h"
+#include "physics/halo.h"
 #include "physics/joint_table.h"
 #include "physics/kept_hash.h"
 #include "physics/moving_static.h"
@@ -47,13 +49,15 @@ class Simulation {
   core::ClusterState release(std::span<const core::BodyId> bodies);
   std::vector<core::ClusterState> release(std::span<const std::span<const core::BodyId>> clusters);
   core::ClusterState peek(std::span<const core::BodyId> bodies) const;
+  /// Like peek() of each cluster, but with contacts between its bodies and others.
+  std::vector<core::ClusterState> copy_whole(std::span<const std::span<const core::BodyId>> clusters) const;
   /// Like peek() of all bodies, into `all`, whose memory is reused.
   void copy_all(core::ClusterState& all) const;
   /// The same. Where most bodies sleep, copies of successive states share what has not changed.
   void copy_all(core::ChangedState& copy);
 
-  bool contains(core::BodyId id) const { return table_.find(id) != nullptr; }
-  std::size_t body_count() const { return table_.size(); }
+  bool contains(core::BodyId id) const;
+  std::size_t body_count() const { return body_ids().size(); }
   std::vector<core::BodyId> body_ids() const;
 
   void step();
@@ -63,6 +67,10 @@ class Simulation {
   std::uint64_t hash_sum() { return hash_.sum(table_, notes_.for_hash); }
   const std::vector<Collision>& collisions() const { return collisions_; }
   std::uint64_t severed_contacts() const { return severed_contacts_; }
+  /// See RegionWorld::couple().
+  void couple(const Coupling& coupling);
+  const std::vector<Moved>& arrived() const { return arrived_; }
+  const std::vector<Moved>& left() const { return left_; }
   void watch_contacts(bool wanted) { world_.contact_impulses().want(wanted); }
   /// Contact impulses of the last step, if watched.
   const std::vector<core::ContactImpulse>& contact_impulses() const { return contact_impulses_; }
@@ -86,6 +94,26 @@ class Simulation {
   void kick(btRigidBody& body, const core::Order& order);
   void take_out(const Removal& removal);
   void take_out_what_broke();
+  void wake_beside(core::BodyId id);
+  // Coupled regions:
+  void meet_neighbours();
+  void meet_far();
+  void post(core::RegionId to, const Halo& halo);
+  Halo fetch(core::RegionId from);
+  Bounds reach_of(const btRigidBody& body) const;
+  Visit visit_of(const HostedBody& body) const;
+  core::RegionId host_of(const HostedBody& body) const;
+  std::vector<core::ClusterState> hand_over(std::span<const std::span<const core::BodyId>> clusters);
+  void take_over(const core::ClusterState& cluster, std::span<const Visit> visits);
+  void push(btRigidBody& body, const Visit& visit);
+  void take_guests(std::vector<Visit>& visits);
+  void part_from(core::BodyId id);
+  void restore_later(const core::ClusterState& cluster, std::span<const std::uint32_t> records);
+  void restore_late_contacts();
+  void send_guests_home();
+  void leave_out_guests();
+  bool is_for_us_to_copy(const btPersistentManifold& manifold) const;
+  void drop_guests(std::span<const core::BodyId> ids);
   void show_statics(core::Step n);
   void wake_near(std::span<const Bounds> changing);
   core::Pose pose_of_static(std::uint32_t index, core::Step n) const;
@@ -130,7 +158,7 @@ class Simulation {
   void restore_pair(const core::ClusterState& cluster, std::span<const std::uint32_t> records);
   std::vector<std::uint32_t> membership(std::span<const std::span<const core::BodyId>> clusters) const;
   struct Copies;
-  Copies copy(const std::vector<std::uint32_t>& cluster_at, std::size_t count) const;
+  Copies copy(const std::vector<std::uint32_t>& cluster_at, std::size_t count, bool whole) const;
   void collect_collisions();
   void collect_contact_impulses();
   void list_contacts();
@@ -176,6 +204,13 @@ class Simulation {
 
   std::shared_ptr<const core::ClusterState> shared_copy_;
   std::vector<const btPersistentManifold*> found_manifolds_;
+  std::unique_ptr<Coupling> coupling_;  ///< null: this world is not coupled with others
+  std::vector<core::BodyId> broken_;    ///< bodies that broke down in the present state
+  std::uint64_t meeting_ = 0;           ///< number of the last meet_neighbours()
+  ParcelWriter parcel_;
+  std::vector<Moved> arrived_, left_;
+  core::ClusterState late_contacts_;  ///< contacts with bodies of other regions that are not here yet
+
   mutable std::vector<KeyedManifold> copied_manifolds_;  ///< of copy_all(), kept for its memory
   StateNotes notes_;
   KeptHash hash_;

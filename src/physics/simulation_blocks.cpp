@@ -18,7 +18,7 @@ void Simulation::settle_blocks() {
   notes_.for_step.for_each(table_, [&](const HostedBody& body, std::size_t) {
     if (!body.born || !body.rigid->isActive()) return;  // only awake bodies have moved
     BodyPlace& place = place_of(*body.rigid);
-    if (place.is_bound) return;
+    if (place.is_bound || place.is_guest) return;
     const core::Vec3 p_WB = from_bullet(body.rigid->getWorldTransform().getOrigin());
     if (!core::leaves(p_WB, place.block, settings_.block_m)) return;
     place.block = core::block_at(p_WB, settings_.block_m);

@@ -2,6 +2,7 @@
 #include <tuple>
 #include <utility>
 
+#include "physics/moving_body.h"
 #include "physics/simulation.h"
 
 namespace aurasim::physics {
@@ -10,6 +11,8 @@ namespace aurasim::physics {
 void Simulation::collect_contact_impulses() {
   contact_impulses_.clear();
   for (const auto& [objects, sum] : world_.contact_impulses().sums()) {
+    const int first = is_static(objects.second) ? objects.first : objects.second;
+    if (is_guest(*table_[static_cast<std::size_t>(first)].rigid)) continue;  // its host reports
     const auto ref = [this](int index) -> core::ObjectRef {
       return is_static(index) ? index : core::ref_of(table_[static_cast<std::size_t>(index)].id);
     };

@@ -6,6 +6,7 @@
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
 #include "core/progress.h"
+#include "physics/moving_body.h"
 #include "physics/prefetch.h"
 #include "physics/simulation.h"
 
@@ -26,15 +27,23 @@ void Simulation::copy_all(core::ClusterState& all) const {
       prefetch_motion(*table_[i + kAhead].rigid);
       prefetch_flags(*table_[i + kAhead].rigid);
     }
-    all.bodies.push_back(table_[i].record());
+    if (!is_guest(*table_[i].rigid)) all.bodies.push_back(table_[i].record());
   }
   core::Progress::mark();
   copied_manifolds_.clear();
   for_each_touching(world_.manifolds(), [&](const btPersistentManifold& manifold) {
+    if (coupling_ != nullptr && !is_for_us_to_copy(manifold)) return;
     copied_manifolds_.push_back({ref_of(*manifold.getBody0()), ref_of(*manifold.getBody1()), &manifold});
   });
   write_manifolds(copied_manifolds_, all);
   joints_.copy_all(table_, all);
+}
+
+/// Of two hosts of a contact, that of the body with the lower id copies it.
+bool Simulation::is_for_us_to_copy(const btPersistentManifold& manifold) const {
+  const int a = manifold.getBody0()->getUserIndex(), b = manifold.getBody1()->getUserIndex();
+  const int first = is_static(a) || is_static(b) ? std::max(a, b) : std::min(a, b);
+  return !is_guest(*table_[static_cast<std::size_t>(first)].rigid);
 }
 
 void Simulation::copy_all(core::ChangedState& copy) {

@@ -9,6 +9,7 @@
 #include "physics/bounds.h"
 #include "physics/breakdown.h"
 #include "physics/bullet_convert.h"
+#include "physics/moving_body.h"
 #include "physics/prefetch.h"
 #include "physics/simulation.h"
 
@@ -79,6 +80,10 @@ void Simulation::apply_orders(core::Step n) {
   for (const core::Order& order : timeline_.due(n)) {
     HostedBody* const body = table_.find(*core::body_of(order.action));
     if (body == nullptr) continue;
+    if (is_guest(*body->rigid)) {
+      if (std::holds_alternative<core::RemoveBody>(order.action)) part_from(body->id);
+      continue;
+    }
     if (std::holds_alternative<core::RemoveBody>(order.action)) {
       take_out({step_ + 1, body->id, {}});
     } else if (body->born) {
@@ -109,13 +114,17 @@ void Simulation::kick(btRigidBody& body, const core::Order& order) {
 void Simulation::take_out_what_broke() {
   std::vector<Removal> broken;
   notes_.for_step.for_each(table_, [&](const HostedBody& body, std::size_t) {
-    if (body.born && has_broken_down(*body.rigid)) broken.push_back({step_, body.id, fault_of(*body.rigid)});
+    if (!body.born || is_guest(*body.rigid) || !has_broken_down(*body.rigid)) return;
+    broken.push_back({step_, body.id, fault_of(*body.rigid)});
   });
-  for (const Removal& removal : broken) take_out(removal);
+  for (const Removal& removal : broken) {
+    if (coupling_ != nullptr) broken_.push_back(removal.body);
+    take_out(removal);
+  }
 }
 
-void Simulation::take_out(const Removal& removal) {
-  const core::BodyId id = removal.body;
+/// Wakes the bodies that touch a body.
+void Simulation::wake_beside(core::BodyId id) {
   for_each_touching(world_.manifolds(), [&](const btPersistentManifold& manifold) {
     const btRigidBody* const gone = table_.find(id)->rigid.get();
     for (const auto& [one, other] :
@@ -126,6 +135,11 @@ void Simulation::take_out(const Removal& removal) {
       note(woken.id);
     }
   });
+}
+
+void Simulation::take_out(const Removal& removal) {
+  const core::BodyId id = removal.body;
+  wake_beside(id);
   const std::uint64_t severed = severed_contacts_;
   notes_.give_up_copy();  // which contacts the bodies that it touched still have is not known
   release({&id, 1});

@@ -7,6 +7,7 @@
 
 #include "core/progress.h"
 #include "physics/bullet_convert.h"
+#include "physics/moving_body.h"
 #include "physics/prefetch.h"
 #include "physics/simulation.h"
 
@@ -36,7 +37,8 @@ struct Simulation::Copies {
   std::uint64_t across = 0;  ///< contacts and joints with bodies outside the cluster
 };
 
-Simulation::Copies Simulation::copy(const std::vector<std::uint32_t>& cluster_at, std::size_t count) const {
+Simulation::Copies Simulation::copy(const std::vector<std::uint32_t>& cluster_at, std::size_t count,
+                                     bool whole) const {
   Copies copies;
   copies.clusters.resize(count);
   for (std::size_t i = 0; i < table_.size(); ++i) {
@@ -54,6 +56,11 @@ Simulation::Copies Simulation::copy(const std::vector<std::uint32_t>& cluster_at
       manifolds[cluster].push_back({ref_of(*manifold.getBody0()), ref_of(*manifold.getBody1()), &manifold});
     } else {
       ++copies.across;
+      if (!whole) return;
+      for (const std::uint32_t cluster : {cluster0, cluster1}) {
+        if (cluster == kStays) continue;
+        manifolds[cluster].push_back({ref_of(*manifold.getBody0()), ref_of(*manifold.getBody1()), &manifold});
+      }
     }
   });
   for (std::size_t i = 0; i < count; ++i) {
@@ -66,7 +73,11 @@ Simulation::Copies Simulation::copy(const std::vector<std::uint32_t>& cluster_at
 }
 
 core::ClusterState Simulation::peek(std::span<const core::BodyId> bodies) const {
-  return std::move(copy(membership({&bodies, 1}), 1).clusters.front());
+  return std::move(copy(membership({&bodies, 1}), 1, false).clusters.front());
+}
+
+std::vector<core::ClusterState> Simulation::copy_whole(std::span<const std::span<const core::BodyId>> clusters) const {
+  return std::move(copy(membership(clusters), clusters.size(), true).clusters);
 }
 
 core::ClusterState Simulation::release(std::span<const core::BodyId> bodies) {
@@ -75,7 +86,7 @@ core::ClusterState Simulation::release(std::span<const core::BodyId> bodies) {
 
 std::vector<core::ClusterState> Simulation::release(std::span<const std::span<const core::BodyId>> clusters) {
   const std::vector<std::uint32_t> cluster_at = membership(clusters);
-  Copies leaving = copy(cluster_at, clusters.size());
+  Copies leaving = copy(cluster_at, clusters.size(), false);
   severed_contacts_ += leaving.across;
   std::vector<bool> leaves(table_.size());
   std::vector<btRigidBody*> born;

@@ -5,6 +5,7 @@
 
 #include "physics/awaken.h"
 #include "physics/bullet_convert.h"
+#include "physics/moving_body.h"
 #include "physics/simulation.h"
 
 namespace aurasim::physics {
@@ -93,6 +94,7 @@ void Simulation::heed_setpoints(core::Step n) {
   const core::ControlLog& controls = timeline_.controls();
   if (controls.empty()) return;
   const auto take = [&](HostedBody& body, core::Quantity quantity, const auto& value, bool is_new) {
+    if (is_guest(*body.rigid)) return;
     if (is_new) new_setpoints_.push_back({body.id, quantity, value});
     if (!body.born || (is_nothing(quantity, value) && !is_new)) return;
     awaken(*body.rigid);

@@ -7,6 +7,7 @@
 
 #include "core/progress.h"
 #include "physics/prefetch.h"
+#include "physics/moving_body.h"
 #include "physics/simulation.h"
 
 namespace aurasim::physics {
@@ -101,6 +102,7 @@ const core::Snapshot& Simulation::snapshot() {
     list_contacts();
     joints_.list_pairs(table_, snapshot_.joints);
   }
+  if (coupling_ != nullptr) leave_out_guests();
   steps_since_snapshot_ = 0;
   moved_.clear();
   moved_contacts_.clear();
@@ -178,7 +180,7 @@ std::span<const core::BodyRecord> Simulation::records() {
   if (!records_are_fresh_) {
     records_.clear();
     for (const HostedBody& body : table_.bodies()) {
-      if (body.born) records_.push_back(body.record());
+      if (body.born && !is_guest(*body.rigid)) records_.push_back(body.record());
     }
     records_are_fresh_ = true;
   }

@@ -1,5 +1,6 @@
 #include "physics/stepper.h"
 
+#include <stdexcept>
 #include <algorithm>
 #include <optional>
 #include <span>
@@ -89,6 +90,10 @@ class Stepper final : public World {
 };
 
 }  // namespace
+
+void World::couple(const Coupling&) {
+  throw std::invalid_argument("only the soft step can be coupled with other regions");
+}
 
 std::unique_ptr<World> make_stepper(const WorldParts& parts, const Settings& settings) {
   return std::make_unique<Stepper>(parts, settings);

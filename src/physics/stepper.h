@@ -15,6 +15,7 @@ class FirstContacts;
 namespace soft {
 class Team;
 }
+struct Coupling;
 struct Settings;
 
 /// The parts that a world uses; all have to outlive it.
@@ -45,6 +46,8 @@ class World : public btDiscreteDynamicsWorld {
   /// Appends the pairs of objects, by user index and in ascending order, that are in contact and of which one is among
   /// moved(). A pair may come more than once.
   virtual void add_contacts_of_moved(std::vector<std::pair<int, int>>&) const {}
+  /// See RegionWorld::couple(). Throws std::invalid_argument if the solver cannot.
+  virtual void couple(const Coupling& coupling);
 };
 
 std::unique_ptr<World> make_stepper(const WorldParts& parts, const Settings& settings);

@@ -49,6 +49,7 @@ dds::TransportSettings neighbour_transport(const config::Launch& launch, core::R
   settings.prototype_count = static_cast<std::uint32_t>(launch.scene.prototypes.size() + core::kRoomForClients);
   settings.static_count = static_cast<std::uint32_t>(launch.scene.statics.size() + core::kRoomForClients);
   settings.joint_count = static_cast<std::uint32_t>(launch.scene.joints.size() + core::kRoomForClients);
+  settings.coupled = launch.is_coupled();
   settings.block_m = launch.block_m();
   return settings;
 }

@@ -181,7 +181,14 @@ void NodeProcess::compute_step() {
   if (std::ranges::any_of(run_.control().statuses(), is_gone)) run_.node->give_up_redo();
   const auto begin = Clock::now();
   keep_the_end();
-  const node::StepReport& report = run_.node->step();
+  try {
+    run_.node->step();
+  } catch (const core::SeamsBroken& broken) {
+    spdlog::warn("state {} is not computed: {}", run_.node->current_step() + 1, broken.what());
+    run_.notices.note_news(broken.what());
+    return;
+  }
+  const node::StepReport& report = run_.node->report();
   run_.control().note_state();
   run_.endpoints.programs().note_state();
   if (report.put_back_from) return note_redo(report);

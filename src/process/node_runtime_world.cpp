@@ -16,6 +16,7 @@ namespace aurasim::process {
 std::unique_ptr<node::Node> NodeRuntime::make_node() {
   node::NodeSetup setup = setup::node_setup(launch, options.region, generation);
   setup.hash_states = options.report.has_value();
+  setup.seams = transport().seams();
   if (options.world) endpoints.commands().bring(options.world->meshes);
   return std::make_unique<node::Node>(setup, launch.scene, launch.regions, transport());
 }

@@ -40,6 +40,7 @@ core::AuraRules aura_rules(const config::Launch& launch) {
   rules.gravity = launch.scene.gravity;
   rules.sweeps = launch.physics.is_continuous();
   rules.redo = launch.redoes();
+  if (launch.is_coupled()) rules.kind = core::AuraKind::kNone;  // nobody publishes any
   return rules;
 }
 

@@ -31,9 +31,10 @@ enum class TopicId : std::uint8_t {
   kObservation,
   kOrders,
   kControl,
-  kCheckpoint
+  kCheckpoint,
+  kSeam
 };
-inline constexpr std::size_t kTopicCount = 17;
+inline constexpr std::size_t kTopicCount = 18;
 
 /// How the messages of a topic are divided into partitions.
 enum class Division : std::uint8_t {

@@ -199,5 +199,15 @@ TEST_F(Scenes, AFailingSeedStaysWithItsShrunkWorld) {
   EXPECT_NO_THROW(config::read_launch(folder_ / "seed_1" / "shrunk" / kLaunchFile));
 }
 
+TEST_F(Scenes, CoupledRegionsHaveTheBitsOfOneNode) {
+  TrialRules coupled = rules(200);
+  coupled.overrides = {"exchange=coupled", "physics.solver=soft_step", "physics.block=2"};
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const WorldOutcome outcome = outcome_of(random_world(seed), coupled);
+    EXPECT_EQ(outcome.error, "") << "seed " << seed;
+    EXPECT_EQ(outcome.first_difference, std::nullopt) << "seed " << seed;
+  }
+}
+
 }  // namespace
 }  // namespace aurasim::lab

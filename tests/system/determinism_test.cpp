@@ -30,6 +30,16 @@ TEST_F(Determinism, DeterministicRunsAreEqual) {
             "");
 }
 
+TEST_F(Determinism, CoupledRegionsAreEqualToTheCentralRun) {
+  const Words coupled = {"exchange=coupled"};
+  for (const std::string scene : {"corner_stacks", "demo"}) {
+    const std::string many = hashes(scene + "_coupled", scene, 400, coupled);
+    EXPECT_GT(hand_offs(scene + "_coupled"), 0);
+    EXPECT_EQ(report_of(scene + "_coupled").count("late_collisions"), 0);
+    EXPECT_EQ(first_difference(many, hashes(scene + "_central", scene, 400, {"regions.count=1"})), "") << scene;
+  }
+}
+
 /// Without auras the demo first goes wrong at a border in state 434.
 constexpr int kUntilBordersMatter = 600;
 

@@ -60,6 +60,11 @@ class Recovery : public SystemTest {
 
 TEST_F(Recovery, ARegionOfADeadNodeComesBackWithTheSameBits) { expect_survives(run_of_demo(), {2}); }
 
+/// The others are in the middle of a step, which they cannot finish.
+TEST_F(Recovery, ACoupledRegionComesBackWithTheSameBits) {
+  expect_survives(run_of_demo(set({"exchange=coupled"})), {2});
+}
+
 TEST_F(Recovery, RegionZeroWhichTakesOrdersMayDieToo) { expect_survives(run_of_demo(), {0}); }
 
 TEST_F(Recovery, TwoAtOnceThatDoNotKeepEachOthersParts) { expect_survives(run_of_demo(), {1, 3}); }

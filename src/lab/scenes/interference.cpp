@@ -205,7 +205,10 @@ void Programs::speak() {
 void Programs::speak(node::Node& node, std::size_t& next) const {
   for (; next < words_.size(); ++next) {
     const Word& word = words_[next];
-    if (word.said_step > node.current_step()) return;
+    core::Step said = word.said_step;
+    // Coupled nodes learn of a static's move by an order, which takes two states.
+    if (listeners_.is_coupled() && !word.setpoints.statics.empty()) said = std::min(said, word.setpoints.at_step - 2);
+    if (said > node.current_step()) return;
     if (word.setpoints.at_step > from_) node.hear(word.setpoints);
   }
 }

@@ -134,6 +134,7 @@ bool compare_runs(const config::Launch& launch, Interference interference, const
   }
   ClusterRules single_rules = std::move(loaded_rules);
   single_rules.aura.redo = false;
+  single_rules.coupled = false;
   single_rules.bandwidth_B_s.reset();
   VirtualCluster single(launch.scene, core::RegionMap::columns(1, 1), single_rules);
   const auto one = play(single, interference, rules.steps, launch.lookahead(), stop);

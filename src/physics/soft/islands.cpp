@@ -66,6 +66,7 @@ void SoftIslands::insert(btRigidBody& body) {
   free_.pop_back();
   body.setUserIndex3(static_cast<int>(slot));
   entries_[slot].body = &body;
+  entries_[slot].is_guest = is_guest(body);
   place_of(body).changes = &changes_;
   changes_.push_back(slot);
 }
@@ -162,8 +163,8 @@ void SoftIslands::unite(std::uint32_t a, std::uint32_t b, std::vector<Seam>& sea
   parents_[std::max(one, other)] = std::min(one, other);
 }
 
-void SoftIslands::find(std::span<const SoftTouch> touches, std::span<const SoftTouch> of_sleepers,
-                       std::span<const std::uint32_t> parted, std::span<btTypedConstraint* const> joints) {
+void SoftIslands::find_parts(std::span<const SoftTouch> touches, std::span<const SoftTouch> of_sleepers,
+                             std::span<btTypedConstraint* const> joints) {
   wakes_any_ = false;
   seams_.clear();
   for (const SoftTouch& touch : touches) unite(touch.slot_a, touch.slot_b, seams_);
@@ -174,7 +175,12 @@ void SoftIslands::find(std::span<const SoftTouch> touches, std::span<const SoftT
     if (!joint->isEnabled() || (both_sleep && knows_sleepers_)) continue;
     unite(one, other, both_sleep ? seams_of_sleepers_ : seams_);
   }
-  mark_parts(parted);
+  mark_parts();
+}
+
+void SoftIslands::settle(std::span<const SoftTouch> touches, std::span<const std::uint32_t> parted,
+                         std::span<btTypedConstraint* const> joints) {
+  look_across(parted);
   const bool knew = knows_sleepers_;
   knows_sleepers_ = true;
   put_to_sleep();
@@ -207,13 +213,24 @@ void SoftIslands::mark(std::uint32_t slot, Part what) {
   parts_[part] |= what;
 }
 
-void SoftIslands::mark_parts(std::span<const std::uint32_t> parted) {
+void SoftIslands::mark_parts() {
   for (const std::uint32_t part : marked_) parts_[part] = 0;
   marked_.clear();
   for (const btRigidBody* body : awake_) {
+    if (entries_[slot_of(*body)].is_guest) continue;
     if (!wants_to_sleep(*body)) mark(slot_of(*body), kUp);
     if (!is_calm(*body)) mark(slot_of(*body), kStirs);
   }
+}
+
+bool SoftIslands::is_sleepy(std::uint32_t slot) const { return sleeps(slot) || wants_to_sleep(*entries_[slot].body); }
+
+void SoftIslands::note_stirs(std::uint32_t guest) {
+  mark(guest, kStirs);
+  wakes_any_ = true;
+}
+
+void SoftIslands::look_across(std::span<const std::uint32_t> parted) {
   const auto touched_by = [this](std::uint32_t slot, std::uint32_t other) {
     if (!is(other, kStirs)) return;
     mark(slot, kTouched);
@@ -237,7 +254,7 @@ void SoftIslands::put_to_sleep() {
   for (std::size_t i = 0; i < awake_.size();) {
     btRigidBody& body = *awake_[i];
     const std::uint32_t slot = slot_of(body);
-    if (is(slot, kUp | kTouched)) {
+    if (entries_[slot].is_guest || is(slot, kUp | kTouched)) {
       ++i;
       continue;
     }
@@ -254,7 +271,7 @@ void SoftIslands::wake() {
   for (std::size_t i = 0; i < asleep_.size();) {
     btRigidBody& body = *asleep_[i];
     const std::uint32_t slot = slot_of(body);
-    const bool wakes = is(slot, kUp | kTouched);
+    const bool wakes = !entries_[slot].is_guest && is(slot, kUp | kTouched);
     if (!wakes || !is_asleep(body)) {
       if (wakes) forget_sleepers();  // disabled: takes no part in the world and is alone from now on
       ++i;
@@ -276,6 +293,7 @@ void SoftIslands::rest(btScalar step_s) {
 
 /// Writes nothing but the body, so threads may share the bodies.
 void SoftIslands::rest(btRigidBody& body, btScalar step_s) const {
+  if (entries_[slot_of(body)].is_guest) return;
   body.updateDeactivation(step_s);
   if (body.getActivationState() == DISABLE_DEACTIVATION) return;
   std::uint32_t part = slot_of(body);
@@ -288,14 +306,25 @@ void SoftIslands::call_neighbours() {
   for (const SoftTouch& touch : touches_) {
     const bool a_moves = has(touch.slot_a, kMoves);
     if (a_moves == has(touch.slot_b, kMoves)) continue;
-    const btRigidBody* const moved = entries_[a_moves ? touch.slot_a : touch.slot_b].body;
+    const Entry &moved = entries_[a_moves ? touch.slot_a : touch.slot_b];
     const std::uint32_t slot = a_moves ? touch.slot_b : touch.slot_a;
-    btRigidBody* const other = entries_[slot].body;
-    if (other == nullptr || !is_asleep(*other) || is_called(*other)) continue;  // a static, disabled, or done
-    if (moved->getActivationState() == WANTS_DEACTIVATION) continue;
-    other->setDeactivationTime(0);
-    called_.push_back(slot);
+    if (moved.is_guest || entries_[slot].is_guest) continue;
+    if (moved.body->getActivationState() != WANTS_DEACTIVATION) call(slot);
   }
+}
+
+void SoftIslands::call(std::uint32_t sleeper) {
+  btRigidBody* const body = entries_[sleeper].body;
+  if (body == nullptr || !is_asleep(*body) || is_called(*body)) return;  // a static, disabled, or done
+  body->setDeactivationTime(0);
+  called_.push_back(sleeper);
+}
+
+void SoftIslands::decide(btRigidBody& guest, bool moves) {
+  const std::uint32_t slot = slot_of(guest);
+  if (has(slot, kMoves) == moves) return;
+  states_[slot] = static_cast<std::uint8_t>(moves ? states_[slot] | kMoves : states_[slot] & ~kMoves);
+  put_into(moves ? awake_ : asleep_, slot);
 }
 
 void SoftIslands::sort(std::span<const SoftTouch> touches, soft::Team& team) {

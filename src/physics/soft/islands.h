@@ -51,9 +51,34 @@ class SoftIslands {
   /// After call(): nobody is awake, and nothing has to be found out about sleepers.
   bool are_at_rest() const { return awake_.empty() && knows_sleepers_; }
 
+  /// Finds the parts, and which of them stir.
+  void find_parts(std::span<const SoftTouch> touches, std::span<const SoftTouch> of_sleepers,
+                  std::span<btTypedConstraint* const> joints);
   /// Puts parts to sleep or wakes them. `parted`: slots of sleepers that have lost the touch of a body that is awake.
-  void find(std::span<const SoftTouch> touches, std::span<const SoftTouch> of_sleepers,
-            std::span<const std::uint32_t> parted, std::span<btTypedConstraint* const> joints);
+  void settle(std::span<const SoftTouch> touches, std::span<const std::uint32_t> parted,
+              std::span<btTypedConstraint* const> joints);
+
+  // Where regions are coupled, each region decides about the bodies that it hosts. Between find_parts() and settle():
+  /// Calls visit(slot, slot) for each two bodies of two blocks that touch. Some pairs come more than once.
+  template <class Visit>
+  void for_each_seam(Visit&& visit) const {
+    for (const Seam& seam : seams_) visit(seam.a, seam.b);
+    for (const Seam& seam : seams_of_sleepers_) visit(seam.a, seam.b);
+  }
+  /// Does it matter to the body whether what touches it stirs?
+  bool is_sleepy(std::uint32_t slot) const;
+  bool stirs(std::uint32_t slot) { return is(slot, kStirs); }
+  /// The part of a guest stirs.
+  void note_stirs(std::uint32_t guest);
+  // After settle():
+  /// Does the body move in the step, as far as this region knows?
+  bool moves(std::uint32_t slot) const { return has(slot, kMoves); }
+  /// Makes a guest move in the step or not, as its host has decided.
+  void decide(btRigidBody& guest, bool moves);
+  // After rest():
+  /// Calls a sleeper that a guest has touched.
+  void call(std::uint32_t sleeper);
+
   bool has_woken_any() const { return has_woken_any_; }
   /// Did the body sleep at call(), and was it woken by find()?
   bool is_woken(std::uint32_t slot) const { return has(slot, kSleeps) && has(slot, kMoves); }
@@ -95,6 +120,7 @@ class SoftIslands {
     std::vector<btRigidBody*>* list = nullptr;  ///< awake_ or asleep_
     std::uint32_t place = 0;                    ///< in the list
     bool settles = false;                       ///< it is in settling_
+    bool is_guest = false;
   };
   /// Slots of two bodies of two blocks that touch.
   struct Seam {
@@ -111,7 +137,8 @@ class SoftIslands {
   void mark(std::uint32_t slot, Part what);
   bool is(std::uint32_t slot, int what) { return (parts_[part_of(slot)] & what) != 0; }
   void unite(std::uint32_t a, std::uint32_t b, std::vector<Seam>& seams);
-  void mark_parts(std::span<const std::uint32_t> parted);
+  void mark_parts();
+  void look_across(std::span<const std::uint32_t> parted);
   void put_to_sleep();
   void wake();
   void rest(btRigidBody& body, btScalar step_s) const;

@@ -55,22 +55,15 @@ class SoftLayout {
   /// worker goes through its groups `times` times before it waits.
   template <class Work>
   void sweep(const soft::Worker& worker, int times, Work&& work) const {
+    for (std::size_t stage = 0; stage < stages_; ++stage) sweep(stage, worker, times, work);
+  }
+  /// One sweep with kInEachPhase, but before each phase, one worker calls before(phase), while the others wait.
+  template <class Work, class Before>
+  void sweep_after(const soft::Worker& worker, Work&& work, Before&& before) const {
     for (std::size_t stage = 0; stage < stages_; ++stage) {
-      if (is_empty_[stage]) continue;
-      for (int time = 0; time < times; ++time) {
-        for (const Run& run : runs_of(0, stage)) {
-          const auto [first, last] = (run.in_order ? soft::Worker{} : worker).share(run.count);
-          if (first < last && (!run.in_order || worker.is_first()))
-            work(time, run.first + first, last - first, run.kind);
-          if (run.ends) worker.wait();
-        }
-      }
-      for (int time = 0; time < times; ++time) {
-        for (const Run& run : runs_of(static_cast<std::size_t>(worker.number) + 1, stage)) {
-          work(time, run.first, run.count, run.kind);
-        }
-      }
+      if (worker.is_first() && stage < kStatics && !is_empty_[stage]) before(static_cast<SoftPhase>(stage));
       worker.wait();
+      sweep(stage, worker, 1, work);
     }
   }
 
@@ -103,6 +96,23 @@ class SoftLayout {
   /// By phase and group.
   using Costs = std::array<std::array<std::uint32_t, kSoftGroups>, kAllPhases>;
 
+  template <class Work>
+  void sweep(std::size_t stage, const soft::Worker& worker, int times, Work&& work) const {
+    if (is_empty_[stage]) return;
+    for (int time = 0; time < times; ++time) {
+      for (const Run& run : runs_of(0, stage)) {
+        const auto [first, last] = (run.in_order ? soft::Worker{} : worker).share(run.count);
+        if (first < last && (!run.in_order || worker.is_first())) work(time, run.first + first, last - first, run.kind);
+        if (run.ends) worker.wait();
+      }
+    }
+    for (int time = 0; time < times; ++time) {
+      for (const Run& run : runs_of(static_cast<std::size_t>(worker.number) + 1, stage)) {
+        work(time, run.first, run.count, run.kind);
+      }
+    }
+    worker.wait();
+  }
   std::size_t stage_of(std::size_t phase) const { return stages_ > 1 ? phase : 0; }
   std::size_t row_of(const Entry& entry) const { return (entry.phase * kColours + entry.colour) * kinds_ + entry.kind; }
   std::span<const Run> runs_of(std::size_t part, std::size_t stage) const {

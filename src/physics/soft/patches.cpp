@@ -9,6 +9,7 @@
 #include "core/progress.h"
 #include "physics/prefetch.h"
 #include "physics/soft/convert.h"
+#include "physics/soft/shared.h"
 
 namespace aurasim::physics {
 namespace {
@@ -196,21 +197,38 @@ void SoftPatches::warm_start(Mover* movers, const soft::Worker& worker) {
   });
 }
 
-void SoftPatches::solve(Mover* movers, const soft::Substep& substep, const soft::Worker& worker) {
+void SoftPatches::solve(Mover* movers, const soft::Substep& substep, SoftShared* shared, const soft::Worker& worker) {
   if (worker.is_first()) core::Progress::mark();
-  layout_.sweep(worker, 1, [&](int, std::size_t first, std::size_t count, std::size_t points) {
+  const auto work = [&](int, std::size_t first, std::size_t count, std::size_t points) {
     soft::kernel().solve(&blocks_[first], count, static_cast<int>(points), movers, substep);
-  });
+  };
+  if (shared == nullptr) return layout_.sweep(worker, 1, work);
+  layout_.sweep_after(worker, work, [&](SoftPhase phase) { shared->exchange(phase, false, movers); });
 }
 
-void SoftPatches::bounce(Mover* movers, const soft::Worker& worker) {
+void SoftPatches::bounce(Mover* movers, SoftShared* shared, const soft::Worker& worker) {
   if (std::ranges::count(bounces_, 1) == 0) return;
+  const auto work = [&](int, std::size_t first, std::size_t count, std::size_t points) {
+    soft::kernel().bounce(&blocks_[first], count, static_cast<int>(points), movers, -kRestSpeed_m_s);
+  };
   for (int sweep = 0; sweep < kBounceSweeps; ++sweep) {
     if (worker.is_first()) core::Progress::mark();
-    layout_.sweep(worker, 1, [&](int, std::size_t first, std::size_t count, std::size_t points) {
-      soft::kernel().bounce(&blocks_[first], count, static_cast<int>(points), movers, -kRestSpeed_m_s);
-    });
+    if (shared == nullptr) {
+      layout_.sweep(worker, 1, work);
+    } else {
+      layout_.sweep_after(worker, work, [&](SoftPhase phase) { shared->exchange(phase, true, movers); });
+    }
   }
+}
+
+bool SoftPatches::may_bounce(std::size_t i) const {
+  if (patches_[i]->restitution <= 0) return false;
+  const soft::Block& block = blocks_[layout_.block(i)];
+  const auto lane = layout_.lane(i);
+  for (int k = 0; k < patches_[i]->count; ++k) {
+    if (block.points[k].approach[lane] < kRestSpeed_m_s) return true;
+  }
+  return false;
 }
 
 void SoftPatches::begin_tally(bool wanted) {
@@ -238,7 +256,7 @@ void SoftPatches::remember(soft::Team& team) const {
     for (std::size_t i = first; i < last; ++i) {
       if (i + kPrefetchDistance < last) {
         const SoftPatch& soon = *patches_[i + kPrefetchDistance];
-        if (!soon.ahead) prefetch_points(*soon.manifold);
+        if (!soon.ahead && !soon.is_foreign) prefetch_points(*soon.manifold);
       }
       remember(i);
     }
@@ -247,6 +265,7 @@ void SoftPatches::remember(soft::Team& team) const {
 
 void SoftPatches::remember(std::size_t i) const {
   SoftPatch& patch = *patches_[i];
+  if (patch.is_foreign) return;
   const soft::Block& block = blocks_[layout_.block(i)];
   const int lane = layout_.lane(i);
   for (int k = 0; k < patch.count; ++k) {

@@ -13,6 +13,8 @@
 
 namespace aurasim::physics {
 
+class SoftShared;
+
 /// Inverse mass and inertia of a body, in the world frame.
 struct SoftInertia {
   soft::Real inv_mass = 0;         ///< 1/kg
@@ -32,8 +34,9 @@ class SoftPatches {
 
   // The next three are called by each worker for its share. They return when all workers are done.
   void warm_start(soft::Mover* movers, const soft::Worker& worker);
-  void solve(soft::Mover* movers, const soft::Substep& substep, const soft::Worker& worker);
-  void bounce(soft::Mover* movers, const soft::Worker& worker);
+  // `shared` exchanges movers with other regions before each phase; null if there are none.
+  void solve(soft::Mover* movers, const soft::Substep& substep, SoftShared* shared, const soft::Worker& worker);
+  void bounce(soft::Mover* movers, SoftShared* shared, const soft::Worker& worker);
 
   // Sums of the contact impulses over all substeps, for observers. They change nothing that is computed.
   /// Clears the sums, or switches them off. Call after build().
@@ -43,6 +46,8 @@ class SoftPatches {
   void tally(const soft::Worker& worker);
   std::size_t size() const { return patches_.size(); }
   const SoftLoad& load() const { return layout_.load(); }
+  /// After build(): can bounce() change the i-th patch?
+  bool may_bounce(std::size_t i) const;
   const SoftPatch& patch(std::size_t i) const { return *patches_[i]; }
   std::int32_t mover_a(std::size_t i) const { return layout_.a(i); }
   std::int32_t mover_b(std::size_t i) const { return layout_.b(i); }

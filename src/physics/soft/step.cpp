@@ -22,6 +22,7 @@
 #include "physics/soft/joints.h"
 #include "physics/soft/patches.h"
 #include "physics/soft/seams.h"
+#include "physics/soft/shared.h"
 #include "physics/soft/threads.h"
 
 namespace aurasim::physics {
@@ -81,6 +82,7 @@ struct SoftStep::Impl {
   }
   void take_in(std::span<btRigidBody* const> awake, std::span<btRigidBody* const> moving_statics,
                std::span<const SoftTouch> touches, std::span<btTypedConstraint* const> joint_list);
+  void take_in_shared(std::span<const SoftTouch> touches, SoftContacts& contacts);
   void make_room(std::size_t moving_statics);
   void take_in_statics(std::span<btRigidBody* const> moving_statics);
   void hold(int user_index);
@@ -102,6 +104,7 @@ struct SoftStep::Impl {
   int substeps;
   double block_m;
   btVector3 gravity{0, 0, 0};
+  SoftShared* shared = nullptr;
   /// by user index; 0: touches nothing; kHeld: touches something and has no mover yet
   std::vector<std::int32_t> mover_at;
   std::vector<std::int32_t> mover_of_static;  ///< by -1 - user index; 0: it stands
@@ -144,9 +147,14 @@ void SoftStep::Impl::take_in(std::span<btRigidBody* const> awake, std::span<btRi
   held.assign(1, nullptr);
   flying.clear();
   for (btRigidBody* body : awake) {
-    (is_held(body->getUserIndex()) ? held : flying).push_back(body);
+    if (is_held(body->getUserIndex())) {
+      held.push_back(body);
+    } else if (!is_guest(*body)) {
+      flying.push_back(body);
+    }
   }
   if (team.employed() > 1) order_by_block();
+  if (shared != nullptr) shared->make_room(held);
   make_room(moving_statics.size());
   take_in_statics(moving_statics);
   team.side_by_side([this](const soft::Worker& worker) {
@@ -156,6 +164,7 @@ void SoftStep::Impl::take_in(std::span<btRigidBody* const> awake, std::span<btRi
     for (std::size_t row = first; row < last; ++row) take_in_row(row);
     take_in_pushes(first * soft::kLanes, last * soft::kLanes, pushes[static_cast<std::size_t>(worker.number)].all);
   });
+  if (shared != nullptr) shared->take_in(movers, inertias);
 }
 
 /// Sorts the bodies by block, so that what a thread works on lies together. The order of movers changes no bit.
@@ -236,6 +245,24 @@ void SoftStep::Impl::take_in_patches(std::span<const SoftTouch> touches, SoftCon
   });
 }
 
+/// Lists the patches, with those of chains of contacts over several regions at the end.
+void SoftStep::Impl::take_in_shared(std::span<const SoftTouch> touches, SoftContacts& contacts) {
+  shared->begin();
+  for (const SoftTouch& touch : touches) {
+    const std::int32_t a = mover_of(touch.a), b = mover_of(touch.b);
+    const SoftPhase phase = phase_of(a, b);
+    const std::size_t group = group_of(phase, places[static_cast<std::size_t>(std::max(0, a))]);
+    shared->add(touch, contacts.patches_of(touch), a, b, phase, group);
+  }
+  shared->settle();
+  const std::span<const SoftShared::Placed> placed = shared->placed();
+  patches.clear(held.size(), placed.size());
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    const SoftShared::Placed& one = placed[i];
+    patches.put(i, *one.patch, one.a, one.b, one.phase, one.group);
+  }
+}
+
 void SoftStep::Impl::take_in_joints(std::span<btTypedConstraint* const> joint_list) {
   joints.clear(joint_list.size());
   team.for_each(joint_list.size(), [&](std::size_t i) {
@@ -311,7 +338,7 @@ void SoftStep::Impl::run(const soft::Worker& worker) {
     patches.warm_start(movers, worker);
     joints.begin_and_solve(movers, kJointSweeps, worker);
     substep.pushes = true;
-    patches.solve(movers, substep, worker);
+    patches.solve(movers, substep, shared, worker);
     soft::kernel().move(movers, tumblers.data(), first_row, last_row, h_s,
                         {static_cast<Real>(kTurn), Real{kMostTurns}});
     if (worker.is_first()) {
@@ -320,10 +347,10 @@ void SoftStep::Impl::run(const soft::Worker& worker) {
     worker.wait();
     joints.look_and_solve(movers, kLastJointSweeps, worker);
     substep.pushes = false;
-    patches.solve(movers, substep, worker);
+    patches.solve(movers, substep, shared, worker);
     if (s + 1 < substeps) patches.tally(worker);
   }
-  patches.bounce(movers, worker);
+  patches.bounce(movers, shared, worker);
   patches.tally(worker);
 }
 
@@ -332,6 +359,7 @@ void SoftStep::Impl::tell(ContactImpulses& impulses) const {
   for (std::size_t i = 0; i < patches.size(); ++i) {
     const SoftPatch& patch = patches.patch(i);
     const std::int32_t a = patches.mover_a(i), b = patches.mover_b(i);
+    if (patch.is_foreign) continue;
     for (int k = 0; k < patch.count; ++k) {
       const SoftPatch::Point& point = patch.points[static_cast<std::size_t>(k)];
       const btVector3& centre = bodies[static_cast<std::size_t>(a > 0 ? a : b)].p;
@@ -346,7 +374,7 @@ void SoftStep::Impl::tell(ContactImpulses& impulses) const {
 void SoftStep::Impl::show(std::size_t i) const {
   const Mover& m = movers[i];
   const Body& body = bodies[i];
-  if (held[i] == nullptr) return;
+  if (held[i] == nullptr || is_guest(*held[i])) return;
   prefetch_after(i);
   const auto after = [](const btVector3& before, const Real(&now)[3]) {
     btVector3 v(0, 0, 0);
@@ -361,14 +389,21 @@ void SoftStep::Impl::show(std::size_t i) const {
 
 void SoftStep::solve(std::span<btRigidBody* const> bodies, std::span<btRigidBody* const> moving_statics,
                      std::span<const SoftTouch> touches, SoftContacts& contacts,
-                     std::span<btTypedConstraint* const> joints, const btVector3& gravity, ContactImpulses& impulses) {
+                     std::span<btTypedConstraint* const> joints, const btVector3& gravity, ContactImpulses& impulses,
+                     SoftShared* shared) {
   Impl& impl = *impl_;
+  impl.shared = shared;
   impl.gravity = gravity;
   impl.take_in(bodies, moving_statics, touches, joints);
-  impl.take_in_patches(touches, contacts);
+  if (shared != nullptr) {
+    impl.take_in_shared(touches, contacts);
+  } else {
+    impl.take_in_patches(touches, contacts);
+  }
   Real pull[3];
   soft::from_bullet(gravity, pull);
   impl.patches.build(impl.movers, impl.inertias.data(), pull, impl.team);
+  if (shared != nullptr) shared->note_bounces(impl.patches);
   impl.patches.begin_tally(impulses.wanted());
   core::Progress::mark();
   impl.take_in_joints(joints);

@@ -18,6 +18,7 @@ namespace soft {
 class Team;
 }
 class SoftContacts;
+class SoftShared;
 struct Settings;
 struct SoftTouch;
 
@@ -28,10 +29,11 @@ class SoftStep {
 
   /// Moves and turns `bodies`: all that are awake. `moving_statics` push them, and their own poses are not changed. The
   /// touches and joints of each island have to come in an order that follows from the island alone; `contacts` has the
-  /// patches of all touches. Gravity in m/s^2. Adds the contact impulses to `impulses`, if wanted.
+  /// patches of all touches. Gravity in m/s^2. Adds the contact impulses to `impulses`, if wanted. `shared` has the
+  /// contacts with bodies of other regions; null if there are none.
   void solve(std::span<btRigidBody* const> bodies, std::span<btRigidBody* const> moving_statics,
              std::span<const SoftTouch> touches, SoftContacts& contacts, std::span<btTypedConstraint* const> joints,
-             const btVector3& gravity, ContactImpulses& impulses);
+             const btVector3& gravity, ContactImpulses& impulses, SoftShared* shared);
 
  private:
   struct Impl;

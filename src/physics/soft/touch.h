@@ -22,6 +22,7 @@ struct SoftPatch {
 
   btPersistentManifold* manifold = nullptr;
   bool ahead = false;        ///< a contact ahead of time: the manifold, if any, does not have the points
+  bool is_foreign = false;   ///< another region has found it; it has no manifold here
   bool has_pressed = false;  ///< for contacts ahead of time: the two bodies have touched in the step
   int a = 0, b = 0;          ///< user indices; those of statics are negative
   std::array<std::int8_t, soft::kMostPoints> of = {};  ///< indices of the points in the manifold

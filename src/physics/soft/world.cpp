@@ -16,6 +16,7 @@
 #include "physics/settings.h"
 #include "physics/soft/contacts.h"
 #include "physics/soft/islands.h"
+#include "physics/soft/shared.h"
 #include "physics/soft/step.h"
 #include "physics/soft/threads.h"
 
@@ -37,7 +38,8 @@ class SoftWorld final : public World {
         moving_statics_(parts.moving_statics),
         step_(settings, parts.team),
         team_(parts.team),
-        looks_ahead_(settings.continuous) {}
+        looks_ahead_(settings.continuous),
+        block_m_(settings.block_m) {}
 
   int stepSimulation(btScalar step_s, int, btScalar) override {
     islands_.call();
@@ -50,24 +52,30 @@ class SoftWorld final : public World {
     contacts_.look(*getPairCache(), static_cast<btCollisionDispatcher&>(*m_dispatcher1), getDispatchInfo(),
                    getGravity());
     first_contacts_.report(contacts_.came(), *getPairCache());
-    islands_.find(contacts_.touches(), contacts_.touches_of_sleepers(), contacts_.parted(), span_of(m_constraints));
+    islands_.find_parts(contacts_.touches(), contacts_.touches_of_sleepers(), span_of(m_constraints));
+    if (shared_) shared_->tell_stirs(islands_);
+    islands_.settle(contacts_.touches(), contacts_.parted(), span_of(m_constraints));
     if (islands_.has_woken_any()) {
       contacts_.add_woken(*getPairCache());
       std::ranges::copy_if(islands_.awake(), std::back_inserter(moved_),
                            [this](const btRigidBody* body) { return islands_.is_woken(slot_of(*body)); });
     }
+    if (shared_) shared_->meet(span_of(m_nonStaticRigidBodies), contacts_, islands_);
     islands_.sort(contacts_.touches(), team_);
     core::Progress::mark();
     step_.solve(islands_.awake(), moving_statics_, islands_.touches(), contacts_, islands_.joints(), getGravity(),
-                contact_impulses_);
+                contact_impulses_, shared_ ? &*shared_ : nullptr);
     report_met();
     islands_.rest(step_s);
+    if (shared_) shared_->call_sleepers(islands_);
     called_.clear();
     for (const std::uint32_t slot : islands_.called()) called_.push_back(&islands_.body_at(slot));
     return 1;
   }
 
   void forget_past() override { islands_.forget_past(); }
+
+  void couple(const Coupling& coupling) override { shared_.emplace(coupling, block_m_); }
 
   bool knows_moved() const override { return true; }
   std::span<btRigidBody* const> moved() const override { return moved_; }
@@ -83,6 +91,10 @@ class SoftWorld final : public World {
   void addRigidBody(btRigidBody* body) override {
     islands_.insert(*body);
     btDiscreteDynamicsWorld::addRigidBody(body);
+  }
+  void addRigidBody(btRigidBody* body, int group, int mask) override {
+    islands_.insert(*body);
+    btDiscreteDynamicsWorld::addRigidBody(body, group, mask);
   }
   void removeRigidBody(btRigidBody* body) override {
     islands_.remove(*body);
@@ -164,6 +176,8 @@ class SoftWorld final : public World {
   soft::Team& team_;
   std::vector<List> lists_;
   bool looks_ahead_;
+  double block_m_;
+  std::optional<SoftShared> shared_;  ///< if this world is coupled with those of other regions
 };
 
 }  // namespace

@@ -1,0 +1,38 @@
+#include "core/block_owners.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/block.h"
+
+namespace aurasim::core {
+namespace {
+
+/// What a body of usual speed goes in a step, and gaps of contacts, m.
+constexpr double kUsualWay_m = 0.4;
+
+/// The first edge of blocks from which on their centres are at `x` or beyond.
+double edge_at(double x, double side_m) { return std::isfinite(x) ? std::ceil(x / side_m - 0.5) * side_m : x; }
+
+}  // namespace
+
+BlockOwners::BlockOwners(const RegionMap& map, double side_m, double reach_m) : map_(map), side_m_(side_m) {
+  for (std::uint32_t i = 0; i < map.size(); ++i) {
+    const Rectangle& region = map.region(RegionId{i});
+    const Rectangle blocks{edge_at(region.x0, side_m), edge_at(region.y0, side_m), edge_at(region.x1, side_m),
+                           edge_at(region.y1, side_m)};
+    if (blocks.x0 >= blocks.x1 || blocks.y0 >= blocks.y1) {
+      throw BadRegionMap("region " + std::to_string(i) + " has no block of " + std::to_string(side_m) + " m");
+    }
+    territories_.push_back({blocks.x0 - reach_m, blocks.y0 - reach_m, blocks.x1 + reach_m, blocks.y1 + reach_m});
+  }
+}
+
+double usual_reach_m(const std::vector<double>& radii_m, double side_m) {
+  double largest = 0;
+  for (const double radius : radii_m) largest = std::max(largest, radius);
+  return kBlockMargin * side_m + std::min(largest, kBlockRadius * side_m) + kUsualWay_m;
+}
+
+}  // namespace aurasim::core

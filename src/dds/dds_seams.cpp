@@ -1,0 +1,149 @@
+#include "dds/dds_seams.h"
+
+#include <chrono>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "core/progress.h"
+#include "dds/typed_endpoints.h"
+#include "messages/seam_codec.h"
+
+namespace aurasim::dds {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// After so long a wait for one parcel, the log names the region.
+constexpr auto kLong = 2s;
+
+struct Peer {
+  Peer(Domain& domain, const SeamSettings& settings, core::RegionId peer, Wakeup& wakeup)
+      : reader(domain,
+               on(TopicId::kSeam, {.source = peer, .destination = settings.region, .life = settings.life},
+                  settings.region),
+               wakeup),
+        writer(domain,
+               on(TopicId::kSeam, {.source = settings.region, .destination = peer, .life = settings.life},
+                  settings.region),
+               wakeup) {}
+
+  Reader reader;
+  Writer writer;
+  std::uint32_t posted = 0, fetched = 0;  ///< in this step
+  messages::SeamParcel last;
+};
+
+}  // namespace
+
+struct DdsSeams::Impl {
+  Impl(Participant& participant_in, const SeamSettings& settings_in)
+      : participant(participant_in), settings(settings_in), wakeup(participant.domain().wakeup()) {
+    for (std::uint32_t i = 0; i < settings.region_count; ++i) {
+      if (core::RegionId{i} == settings.region) continue;
+      peers.try_emplace(core::RegionId{i}, participant.domain(), settings, core::RegionId{i}, wakeup);
+    }
+    expected.map_version = settings.map_version;
+    expected.destination = settings.region;
+    expected.region_count = settings.region_count;
+  }
+
+  bool take(core::RegionId from, Peer& peer);
+
+  Participant& participant;
+  SeamSettings settings;
+  Wakeup& wakeup;
+  std::map<core::RegionId, Peer> peers;
+  messages::Expected expected;
+  core::Generation generation = 0;
+  core::Step step = 0;
+  wire::SeamParcel sample;  // reused
+};
+
+/// Takes the next parcel of this step. Parcels of earlier steps are dropped.
+bool DdsSeams::Impl::take(core::RegionId from, Peer& peer) {
+  expected.source = from;
+  Origin origin;
+  while (peer.reader.take(&sample, &origin)) {
+    if (!settings.is_node(from, origin.writer.guidPrefix)) {
+      peer.reader.refuse_from(origin, fmt::format("it is not the node of region {}", core::value_of(from)));
+      continue;
+    }
+    auto decoded = messages::decode(sample, expected);
+    if (const auto* error = std::get_if<messages::WireError>(&decoded)) {
+      peer.reader.refuse_from(origin, *error);
+      continue;
+    }
+    auto& parcel = std::get<messages::SeamParcel>(decoded);
+    if (parcel.header.generation < generation || parcel.header.step < step) continue;
+    const bool is_next = parcel.header.generation == generation && parcel.header.step == step &&
+                         parcel.header.number == peer.fetched + 1;
+    if (!is_next) {
+      throw core::SeamsBroken(fmt::format("region {} is in another step: parcel {} of state {} came instead of {} of {}",
+                                          core::value_of(from), parcel.header.number, parcel.header.step,
+                                          peer.fetched + 1, step));
+    }
+    ++peer.fetched;
+    peer.last = std::move(parcel);
+    return true;
+  }
+  return false;
+}
+
+DdsSeams::DdsSeams(Participant& participant, const SeamSettings& settings)
+    : impl_(std::make_unique<Impl>(participant, settings)) {}
+
+DdsSeams::~DdsSeams() = default;
+
+std::vector<std::string> DdsSeams::unmatched(core::RegionId region) const {
+  std::vector<std::string> missing;
+  const auto peer = impl_->peers.find(region);
+  if (peer == impl_->peers.end()) return missing;
+  if (!peer->second.reader.watch().any_matched(std::nullopt)) missing.emplace_back("its seam writer");
+  if (!peer->second.writer.reaches(region)) missing.emplace_back("its seam reader");
+  return missing;
+}
+
+void DdsSeams::begin(core::Generation generation, core::Step step) {
+  impl_->generation = generation;
+  impl_->step = step;
+  for (auto& [region, peer] : impl_->peers) {
+    peer.posted = peer.fetched = 0;
+    peer.writer.forget_acknowledged();
+  }
+}
+
+void DdsSeams::post(core::RegionId to, std::span<const std::byte> parcel) {
+  Peer& peer = impl_->peers.at(to);
+  const messages::SeamHeader header{impl_->settings.region, to, impl_->generation, impl_->step, ++peer.posted};
+  messages::encode(header, impl_->settings.map_version, parcel, impl_->sample);
+  if (peer.writer.write(&impl_->sample) == WriteResult::kFailed) {
+    throw core::SeamsBroken(fmt::format("region {} takes no parcels", core::value_of(to)));
+  }
+}
+
+std::span<const std::byte> DdsSeams::fetch(core::RegionId from) {
+  Peer& peer = impl_->peers.at(from);
+  const auto begun = std::chrono::steady_clock::now();
+  bool is_named = false;
+  for (;;) {
+    impl_->wakeup.clear();
+    if (impl_->take(from, peer)) return peer.last.octets;
+    if (impl_->settings.is_lost(from)) {
+      throw core::SeamsBroken(fmt::format("region {} was lost in the middle of a step", core::value_of(from)));
+    }
+    core::Progress::mark();
+    impl_->participant.progress();
+    impl_->wakeup.wait(5ms);
+    if (!is_named && std::chrono::steady_clock::now() - begun > kLong) {
+      is_named = true;
+      spdlog::warn("region {} waits for region {} in the middle of state {}", core::value_of(impl_->settings.region),
+                   core::value_of(from), impl_->step);
+    }
+  }
+}
+
+}  // namespace aurasim::dds

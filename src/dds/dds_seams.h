@@ -1,0 +1,45 @@
+// Parcels between coupled regions over DDS (topic seam). The thread that computes writes and takes them itself.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/seam_mail.h"
+#include "dds/participant.h"
+#include "dds/watch.h"
+
+namespace aurasim::dds {
+
+struct SeamSettings {
+  core::RegionId region{};
+  std::uint32_t region_count = 0;  ///< all others are peers
+  std::uint64_t map_version = 0;
+  core::Generation life = 0;  ///< see TransportSettings
+  /// True when a region's node is known to be lost.
+  std::function<bool(core::RegionId)> is_lost;
+  /// True if a process is the region's node; parcels of others are refused.
+  std::function<bool(core::RegionId, const ProcessPrefix&)> is_node;
+};
+
+class DdsSeams final : public core::SeamMail {
+ public:
+  /// The participant must outlive it.
+  DdsSeams(Participant& participant, const SeamSettings& settings);
+  ~DdsSeams() override;
+
+  /// Names of the endpoints of a region that are not matched yet.
+  std::vector<std::string> unmatched(core::RegionId region) const;
+
+  void begin(core::Generation generation, core::Step step) override;
+  void post(core::RegionId to, std::span<const std::byte> parcel) override;
+  /// Throws core::SeamsBroken once the region's node is lost.
+  std::span<const std::byte> fetch(core::RegionId from) override;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace aurasim::dds

@@ -1,0 +1,337 @@
+// Coupled regions (physics/coupling.h): who hosts a body, and which bodies of other regions a region has to know, is
+// settled before each step.
+//
+// A body is sent to a region if it may touch something in that region's territory within the step. So two bodies that
+// may touch are both known to the host of one of them, unless both are far from home. A body that extends beyond the
+// territory of its host is far. Whoever meets a far body there answers its host with all that the body may touch.
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <utility>
+#include <string>
+
+#include <LinearMath/btAabbUtil2.h>
+
+#include "physics/bounds.h"
+#include "physics/bullet_convert.h"
+#include "physics/halo.h"
+#include "physics/moving_body.h"
+#include "physics/simulation.h"
+
+namespace aurasim::physics {
+namespace {
+
+/// Added to the bounds of bodies, m. Covers the damping of speeds in the step, and rounding.
+constexpr double kSlack_m = 0.05;
+
+bool overlap(const Bounds& bounds, const core::Rectangle& area) {
+  return bounds.low.x() <= area.x1 && bounds.high.x() >= area.x0 && bounds.low.y() <= area.y1 &&
+         bounds.high.y() >= area.y0;
+}
+
+bool is_within(const Bounds& bounds, const core::Rectangle& area) {
+  return bounds.low.x() >= area.x0 && bounds.high.x() <= area.x1 && bounds.low.y() >= area.y0 &&
+         bounds.high.y() <= area.y1;
+}
+
+bool overlap(const Bounds& a, const Bounds& b) {
+  return TestAabbAgainstAabb2(a.low, a.high, b.low, b.high);
+}
+
+}  // namespace
+
+void Simulation::couple(const Coupling& coupling) {
+  coupling_ = std::make_unique<Coupling>(coupling);
+  world_.couple(coupling);
+}
+
+/// Bounds of what a body may touch in the next step.
+Bounds Simulation::reach_of(const btRigidBody& body) const {
+  Bounds bounds = bounds_of(body).grown(scalar(kSlack_m));
+  if (!body.isActive()) return bounds;
+  const btScalar step_s = scalar(settings_.step_s);
+  const btVector3 pull = to_bullet(scene_->gravity) + body.getInvMass() * body.getTotalForce();
+  const btVector3 way = step_s * body.getLinearVelocity(), drop = step_s * step_s / 2 * pull;
+  const btVector3 none(0, 0, 0);
+  for (const btVector3& end : {way, drop}) {
+    btVector3 back = end, on = end;
+    back.setMin(none), on.setMax(none);
+    bounds.low += back, bounds.high += on;
+  }
+  return bounds;
+}
+
+Visit Simulation::visit_of(const HostedBody& body) const {
+  return {body.record(), host_of(body), from_bullet(body.rigid->getTotalForce()),
+          from_bullet(body.rigid->getTotalTorque())};
+}
+
+/// The region that hosts a body in the next step.
+core::RegionId Simulation::host_of(const HostedBody& body) const {
+  const BodyPlace& place = place_of(*body.rigid);
+  return place.is_guest ? place.host : coupling_->owners->owner(place.block);
+}
+
+void Simulation::meet_neighbours() {
+  std::map<core::RegionId, Halo> halos;
+  for_each_peer(*coupling_, [&](core::RegionId peer) { halos[peer].broken = broken_; });
+  broken_.clear();
+  arrived_.clear();
+  left_.clear();
+  std::map<core::RegionId, std::vector<core::BodyId>> leaving;
+  std::vector<Visit> guests;  // of this region
+  for (const HostedBody& body : table_.bodies()) {
+    if (!body.born || is_guest(*body.rigid)) continue;
+    const core::RegionId host = host_of(body);
+    if (host != coupling_->self) {
+      leaving[host].push_back(body.id);
+      guests.push_back(visit_of(body));
+      left_.push_back({guests.back().body, host});
+      halos[host].arrivals.push_back(guests.back());
+    }
+    const Bounds reach = reach_of(*body.rigid);
+    for (auto& [peer, halo] : halos) {
+      if (peer != host && overlap(reach, coupling_->owners->territory(peer))) halo.guests.push_back(visit_of(body));
+    }
+  }
+  std::vector<std::span<const core::BodyId>> clusters;
+  for (const auto& [host, ids] : leaving) clusters.emplace_back(ids);
+  std::vector<core::ClusterState> left = hand_over(clusters);
+  std::size_t next = 0;
+  for (const auto& [host, ids] : leaving) {
+    for (core::BodyRecord& body : left[next].bodies) ++body.epoch;
+    halos[host].for_you = left[next++];
+  }
+  for (const auto& [peer, halo] : halos) post(peer, halo);
+
+  std::vector<Halo> received;
+  for_each_peer(*coupling_, [&](core::RegionId peer) {
+    received.push_back(fetch(peer));
+    for (const core::BodyRecord& body : received.back().for_you.bodies) arrived_.push_back({body, peer});
+  });
+  std::ranges::sort(arrived_, {}, [](const Moved& moved) { return moved.body.id; });
+  for (Halo& halo : received) {
+    for (const core::BodyId id : halo.broken) part_from(id);
+    guests.insert(guests.end(), halo.guests.begin(), halo.guests.end());
+  }
+  ++meeting_;
+  take_guests(guests);
+  for (const Halo& halo : received) take_over(halo.for_you, halo.arrivals);
+  for (const core::ClusterState& cluster : left) restore_contacts(cluster);
+  meet_far();
+  restore_late_contacts();
+  send_guests_home();
+  note_all();
+}
+
+void Simulation::restore_later(const core::ClusterState& cluster, std::span<const std::uint32_t> records) {
+  for (const std::uint32_t index : records) {
+    core::ManifoldRecord& later = late_contacts_.manifolds.emplace_back(cluster.manifolds[index]);
+    const auto first =
+        cluster.points.begin() + static_cast<std::ptrdiff_t>(later.first_point * core::kContactPointDoubles);
+    later.first_point = static_cast<std::uint32_t>(late_contacts_.points.size() / core::kContactPointDoubles);
+    late_contacts_.points.insert(late_contacts_.points.end(), first,
+                                 first + static_cast<std::ptrdiff_t>(later.point_count * core::kContactPointDoubles));
+  }
+}
+
+/// Contacts of a saved world with bodies of other regions are restored when these have come for the first time.
+void Simulation::restore_late_contacts() {
+  const core::ClusterState late = std::exchange(late_contacts_, {});
+  if (late.manifolds.empty()) return;
+  restore_contacts(late);
+  late_contacts_ = {};  // of bodies that are not near any more
+}
+
+/// Tells the hosts of far bodies what these may touch here, and learns what our far bodies may touch elsewhere.
+void Simulation::meet_far() {
+  struct Far {
+    core::BodyId id;
+    core::RegionId host;
+    Bounds reach;
+  };
+  const core::BlockOwners& owners = *coupling_->owners;
+  std::vector<Far> far;
+  for (const HostedBody& body : table_.bodies()) {
+    if (!body.born || (is_guest(*body.rigid) && place_of(*body.rigid).met != meeting_)) continue;
+    const core::RegionId host = is_guest(*body.rigid) ? place_of(*body.rigid).host : coupling_->self;
+    const Bounds reach = reach_of(*body.rigid);
+    if (!is_within(reach, owners.territory(host))) far.push_back({body.id, host, reach});
+  }
+  std::map<core::RegionId, Halo> answers;
+  std::vector<core::RegionId> expected;
+  for (const Far& one : far) {
+    if (one.host == coupling_->self) {
+      for_each_peer(*coupling_, [&](core::RegionId peer) {
+        if (overlap(one.reach, owners.territory(peer))) expected.push_back(peer);
+      });
+    } else if (overlap(one.reach, owners.territory(coupling_->self))) {
+      answers[one.host];
+    }
+  }
+  for (auto& [host, answer] : answers) {
+    for (const HostedBody& body : table_.bodies()) {
+      if (!body.born || host_of(body) == host) continue;
+      const Bounds reach = reach_of(*body.rigid);
+      const bool is_known = overlap(reach, owners.territory(host));  // it was sent before
+      const auto may_touch = [&](const Far& one) { return one.host == host && overlap(one.reach, reach); };
+      const bool is_far_guest = std::ranges::any_of(far, [&](const Far& one) { return one.id == body.id; });
+      if (is_guest(*body.rigid) && !is_far_guest) continue;
+      if (!is_known && std::ranges::any_of(far, may_touch)) answer.guests.push_back(visit_of(body));
+    }
+    post(host, answer);
+  }
+  std::ranges::sort(expected);
+  const auto twins = std::ranges::unique(expected);
+  expected.erase(twins.begin(), twins.end());
+  std::vector<Visit> guests;
+  for (const core::RegionId peer : expected) {
+    const Halo answer = fetch(peer);
+    guests.insert(guests.end(), answer.guests.begin(), answer.guests.end());
+  }
+  take_guests(guests);
+}
+
+void Simulation::post(core::RegionId to, const Halo& halo) {
+  parcel_.clear();
+  write(halo, parcel_);
+  coupling_->mail->post(to, parcel_.bytes());
+}
+
+Halo Simulation::fetch(core::RegionId from) {
+  ParcelReader parcel(coupling_->mail->fetch(from));
+  Halo halo = read_halo(parcel);
+  const auto check = [this](const core::BodyRecord& body) {
+    if (core::value_of(body.prototype) >= scene_->prototypes.size()) throw BadParcel("unknown prototype in a parcel");
+  };
+  for (const Visit& visit : halo.guests) check(visit.body);
+  for (const core::BodyRecord& body : halo.for_you.bodies) check(body);
+  return halo;
+}
+
+/// Removes bodies that another region hosts from now on.
+std::vector<core::ClusterState> Simulation::hand_over(std::span<const std::span<const core::BodyId>> clusters) {
+  if (clusters.empty()) return {};
+  std::vector<core::ClusterState> left = copy_whole(clusters);
+  for (const std::span<const core::BodyId> cluster : clusters) {
+    for (const core::BodyId id : cluster) {
+      const btRigidBody* const gone = table_.find(id)->rigid.get();
+      std::erase_if(pushed_, [gone](const Push& push) { return push.body == gone; });
+    }
+  }
+  const std::uint64_t severed = severed_contacts_;
+  release(clusters);
+  severed_contacts_ = severed;  // both sides keep the contacts with bodies that stay
+  return left;
+}
+
+/// Adds bodies that this region hosts from now on, with their contacts.
+void Simulation::take_over(const core::ClusterState& cluster, std::span<const Visit> visits) {
+  if (cluster.bodies.empty()) return;
+  std::vector<core::BodyId> known;
+  for (const core::BodyRecord& body : cluster.bodies) {
+    const HostedBody* const here = table_.find(body.id);
+    if (here != nullptr && is_guest(*here->rigid)) known.push_back(body.id);
+  }
+  drop_guests(known);
+  join(cluster);
+  for (std::size_t i = 0; i < visits.size(); ++i) {
+    push(*table_.find(cluster.bodies[i].id)->rigid, visits[i]);
+  }
+}
+
+void Simulation::push(btRigidBody& body, const Visit& visit) {
+  if (visit.force.isZero(0) && visit.torque.isZero(0)) return;
+  pushed_.push_back({&body, to_bullet(visit.force), to_bullet(visit.torque)});
+  body.applyCentralForce(pushed_.back().force);
+  body.applyTorque(pushed_.back().torque);
+}
+
+void Simulation::take_guests(std::vector<Visit>& visits) {
+  const auto id_of = [](const Visit& visit) { return visit.body.id; };
+  std::ranges::stable_sort(visits, {}, id_of);
+  const auto twins = std::ranges::unique(visits, {}, id_of);  // several regions may answer with the same body
+  visits.erase(twins.begin(), twins.end());
+  std::vector<HostedBody> arrivals;
+  for (const Visit& visit : visits) {
+    HostedBody* body = table_.find(visit.body.id);
+    if (body == nullptr) {
+      arrivals.push_back(make_body(visit.body));
+      place_of(*arrivals.back().rigid).is_guest = true;
+      continue;
+    }
+    if (!is_guest(*body->rigid)) {
+      throw BadParcel("body " + std::to_string(core::value_of(body->id)) + " has two hosts");
+    }
+    set_motion(*body->rigid, visit.body);
+    note_change(*body->rigid);
+    world_.move(*body->rigid);
+  }
+  if (!arrivals.empty()) {
+    table_.insert(std::move(arrivals));
+    next_birth_ = std::min(next_birth_, step_);
+    insert_born();
+  }
+  for (const Visit& visit : visits) {
+    btRigidBody& body = *table_.find(visit.body.id)->rigid;
+    BodyPlace& place = place_of(body);
+    place.host = visit.host, place.met = meeting_;
+    push(body, visit);
+  }
+}
+
+/// Removes a guest that has been removed from the world. What lay on it wakes.
+void Simulation::part_from(core::BodyId id) {
+  const HostedBody* const body = table_.find(id);
+  if (body == nullptr || !is_guest(*body->rigid)) return;
+  wake_beside(id);
+  drop_guests({&id, 1});
+}
+
+/// Removes the guests that no longer come near.
+void Simulation::send_guests_home() {
+  std::vector<core::BodyId> gone;
+  for (const HostedBody& body : table_.bodies()) {
+    if (is_guest(*body.rigid) && place_of(*body.rigid).met != meeting_) gone.push_back(body.id);
+  }
+  drop_guests(gone);
+}
+
+void Simulation::drop_guests(std::span<const core::BodyId> ids) {
+  if (ids.empty()) return;
+  std::vector<bool> leaves(table_.size());
+  std::vector<btRigidBody*> gone;
+  for (const core::BodyId id : ids) {
+    HostedBody* const body = table_.find(id);
+    leaves[static_cast<std::size_t>(body - table_.bodies().data())] = true;
+    gone.push_back(body->rigid.get());
+    std::erase_if(pushed_, [&](const Push& push) { return push.body == body->rigid.get(); });
+  }
+  world_.remove(gone);
+  table_.erase(leaves);
+}
+
+/// Takes guests and their contacts out of the snapshot.
+void Simulation::leave_out_guests() {
+  constexpr std::uint32_t kOut = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> places;
+  std::uint32_t next = 0;
+  for (const HostedBody& body : table_.bodies()) places.push_back(is_guest(*body.rigid) ? kOut : next++);
+  if (next == places.size()) return;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (places[i] != kOut) snapshot_.bodies[places[i]] = snapshot_.bodies[i];
+  }
+  snapshot_.bodies.resize(next);
+  snapshot_.born = snapshot_.awake = 0;
+  for (const core::BodyState& body : snapshot_.bodies) {
+    if (body.birth > step_) continue;
+    ++snapshot_.born;
+    snapshot_.awake += body.awake ? 1 : 0;
+  }
+  for (std::vector<core::Contact>* const pairs : {&snapshot_.contacts, &snapshot_.joints}) {
+    for (core::Contact& pair : *pairs) pair = {places[pair.a], places[pair.b]};
+    std::erase_if(*pairs, [](const core::Contact& pair) { return pair.a == kOut || pair.b == kOut; });
+  }
+}
+
+}  // namespace aurasim::physics

@@ -1,0 +1,416 @@
+#include "physics/soft/shared.h"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include "physics/bullet_convert.h"
+#include "physics/moving_body.h"
+#include "physics/soft/contacts.h"
+#include "physics/soft/convert.h"
+#include "physics/soft/islands.h"
+
+namespace aurasim::physics {
+namespace {
+
+using soft::Mover;
+using soft::Real;
+
+/// Numbers of a mover that regions exchange: those of Mover without the unused ones.
+constexpr std::size_t kRow = 13;
+
+void write_row(const Mover& mover, ParcelWriter& parcel) {
+  parcel.put_some(mover.v, 3), parcel.put_some(mover.w, 3);
+  parcel.put_some(mover.dp, 3), parcel.put_some(mover.dq, 4);
+}
+
+void read_row(Mover& mover, ParcelReader& parcel) {
+  parcel.take_some(mover.v, 3), parcel.take_some(mover.w, 3);
+  parcel.take_some(mover.dp, 3), parcel.take_some(mover.dq, 4);
+}
+
+void write_patch(const SoftPatch& patch, ParcelWriter& parcel) {
+  parcel.put_some(patch.normal, 3), parcel.put_some(patch.belt, 3);
+  for (const Real value : {patch.friction, patch.restitution, patch.spinning_m, patch.rolling_m, patch.rub_1,
+                           patch.rub_2, patch.twist}) {
+    parcel.put(value);
+  }
+  parcel.put(static_cast<std::uint8_t>(patch.count));
+  for (int i = 0; i < patch.count; ++i) {
+    const SoftPatch::Point& point = patch.points[static_cast<std::size_t>(i)];
+    parcel.put_some(point.r_a, 3), parcel.put_some(point.r_b, 3);
+    parcel.put(point.gap), parcel.put(point.impulse);
+  }
+}
+
+SoftPatch read_patch(ParcelReader& parcel) {
+  SoftPatch patch;
+  patch.is_foreign = true;
+  parcel.take_some(patch.normal, 3), parcel.take_some(patch.belt, 3);
+  for (Real* const value : {&patch.friction, &patch.restitution, &patch.spinning_m, &patch.rolling_m, &patch.rub_1,
+                            &patch.rub_2, &patch.twist}) {
+    *value = parcel.take<Real>();
+  }
+  const auto count = parcel.take<std::uint8_t>();
+  if (count == 0 || count > soft::kMostPoints) throw BadParcel("a contact of another region has no points");
+  patch.count = static_cast<std::int8_t>(count);
+  for (int i = 0; i < count; ++i) {
+    SoftPatch::Point& point = patch.points[static_cast<std::size_t>(i)];
+    parcel.take_some(point.r_a, 3), parcel.take_some(point.r_b, 3);
+    point.gap = parcel.take<Real>(), point.impulse = parcel.take<Real>();
+  }
+  return patch;
+}
+
+/// A body of a parcel: inverse mass and inertia, velocity.
+void write_body(const btRigidBody& body, bool moves, ParcelWriter& parcel) {
+  parcel.put(core::value_of(place_of(body).id));
+  parcel.put(static_cast<std::uint8_t>(moves));
+  const btMatrix3x3& inverse = body.getInvInertiaTensorWorld();
+  parcel.put(static_cast<Real>(body.getInvMass()));
+  for (int row = 0; row < 3; ++row) {
+    for (int column = row; column < 3; ++column) parcel.put(static_cast<Real>(inverse[row][column]));
+  }
+  Real v[3], w[3];
+  soft::from_bullet(body.getLinearVelocity(), v), soft::from_bullet(body.getAngularVelocity(), w);
+  parcel.put_some(v, 3), parcel.put_some(w, 3);
+}
+constexpr std::size_t kBodyBytes = 8 + 1 + 13 * sizeof(Real);
+constexpr std::size_t kLeastPatchBytes = 8 + 8 + 8 + 1 + 13 * sizeof(Real) + 1;
+
+SoftPlace place(const btRigidBody& body, double block_m) {
+  const BodyPlace& place = place_of(body);
+  return soft_place(from_bullet(body.getWorldTransform().getOrigin()), place.block, place.radius_m, block_m);
+}
+
+}  // namespace
+
+std::vector<core::RegionId> SoftShared::audience(const btRigidBody& body, SoftPhase phase) const {
+  std::vector<core::RegionId> regions;
+  if (phase == SoftPhase::kGiants) {
+    for_each_peer(coupling_, [&](core::RegionId peer) { regions.push_back(peer); });
+    return regions;
+  }
+  const core::Block corner = place(body, block_m_).corner;
+  for (const core::Block& block : {core::Block{corner.x - 1, corner.y - 1}, core::Block{corner.x, corner.y - 1},
+                                   core::Block{corner.x - 1, corner.y}, corner}) {
+    const core::RegionId region = coupling_.owners->owner(block);
+    if (region != coupling_.self && std::ranges::find(regions, region) == regions.end()) regions.push_back(region);
+  }
+  return regions;
+}
+
+void SoftShared::tell_stirs(SoftIslands& islands) {
+  // Whether a part stirs only matters to bodies that sleep or want to. Both hosts know of which bodies this is true.
+  std::map<core::RegionId, std::vector<std::pair<core::BodyId, std::uint32_t>>> ours, theirs;
+  islands.for_each_seam([&](std::uint32_t a, std::uint32_t b) {
+    const btRigidBody *one = &islands.body_at(a), *other = &islands.body_at(b);
+    if (is_guest(*one) == is_guest(*other)) return;
+    if (is_guest(*one)) std::swap(one, other), std::swap(a, b);
+    const core::RegionId host = place_of(*other).host;
+    if (islands.is_sleepy(b)) ours[host].emplace_back(place_of(*one).id, a);
+    if (islands.is_sleepy(a)) theirs[host].emplace_back(place_of(*other).id, b);
+  });
+  const auto sort_out = [](auto& list) {
+    std::ranges::sort(list);
+    const auto twins = std::ranges::unique(list);
+    list.erase(twins.begin(), twins.end());
+  };
+  for (auto& [host, bodies] : ours) {
+    sort_out(bodies);
+    parcel_.clear();
+    for (const auto& [id, slot] : bodies) parcel_.put(static_cast<std::uint8_t>(islands.stirs(slot)));
+    coupling_.mail->post(host, parcel_.bytes());
+  }
+  for (auto& [host, bodies] : theirs) {
+    sort_out(bodies);
+    ParcelReader parcel(coupling_.mail->fetch(host));
+    for (const auto& [id, slot] : bodies) {
+      if (parcel.take<std::uint8_t>() != 0) islands.note_stirs(slot);
+    }
+    if (!parcel.at_end()) throw BadParcel("a parcel between regions is too long");
+  }
+}
+
+void SoftShared::call_sleepers(SoftIslands& islands) {
+  std::map<core::RegionId, ParcelWriter> ours;
+  std::map<core::RegionId, std::vector<std::uint32_t>> theirs;
+  for (const SoftTouch& touch : islands.touches()) {
+    if (touch.slot_a == 0 || touch.slot_b == 0) continue;
+    const bool a_moves = islands.moves(touch.slot_a);
+    if (a_moves == islands.moves(touch.slot_b)) continue;
+    const std::uint32_t mover = a_moves ? touch.slot_a : touch.slot_b, sleeper = a_moves ? touch.slot_b : touch.slot_a;
+    const btRigidBody &moved = islands.body_at(mover), &asleep = islands.body_at(sleeper);
+    if (is_guest(moved) == is_guest(asleep)) continue;
+    if (is_guest(asleep)) {
+      const bool is_calm = moved.getActivationState() == WANTS_DEACTIVATION;
+      ours[place_of(asleep).host].put(static_cast<std::uint8_t>(!is_calm));
+    } else {
+      theirs[place_of(moved).host].push_back(sleeper);
+    }
+  }
+  for (const auto& [host, parcel] : ours) coupling_.mail->post(host, parcel.bytes());
+  for (const auto& [host, sleepers] : theirs) {
+    ParcelReader parcel(coupling_.mail->fetch(host));
+    for (const std::uint32_t sleeper : sleepers) {
+      if (parcel.take<std::uint8_t>() != 0) islands.call(sleeper);
+    }
+    if (!parcel.at_end()) throw BadParcel("a parcel between regions is too long");
+  }
+}
+
+void SoftShared::meet(std::span<btRigidBody* const> bodies, SoftContacts& contacts, SoftIslands& islands) {
+  std::vector<btRigidBody*> by_index;
+  for (btRigidBody* body : bodies) {
+    const auto index = static_cast<std::size_t>(body->getUserIndex());
+    if (by_index.size() <= index) by_index.resize(index + 1, nullptr);
+    by_index[index] = body;
+  }
+  struct Told {
+    std::vector<const btRigidBody*> bodies;
+    std::vector<std::pair<const SoftTouch*, SoftPhase>> touches;
+  };
+  std::map<core::RegionId, Told> told;
+  for_each_peer(coupling_, [&](core::RegionId peer) { told[peer]; });
+  for (const SoftTouch& touch : contacts.touches()) {
+    if (touch.a < 0 || touch.b < 0 || !touch.acts) continue;
+    const btRigidBody* const ends[2] = {by_index[static_cast<std::size_t>(touch.a)],
+                                        by_index[static_cast<std::size_t>(touch.b)]};
+    const SoftPhase phase = physics::phase_of(place(*ends[0], block_m_), place(*ends[1], block_m_));
+    if (phase == SoftPhase::kInside) continue;
+    for (int i = 0; i < 2; ++i) {
+      if (is_guest(*ends[i])) told[place_of(*ends[i]).host].bodies.push_back(ends[1 - i]);
+    }
+    if (phase == SoftPhase::kEdges) continue;
+    const bool we_tell = !is_guest(*ends[touch.a < touch.b ? 0 : 1]);  // both hosts have found it
+    for (const core::RegionId peer : audience(*ends[0], phase)) {
+      bool has_it = false;
+      for (const btRigidBody* end : ends) {
+        if (is_guest(*end)) {
+          has_it = has_it || place_of(*end).host == peer;
+        } else {
+          told[peer].bodies.push_back(end);
+        }
+      }
+      if (we_tell && !has_it) told[peer].touches.emplace_back(&touch, phase);
+    }
+  }
+  for (auto& [peer, what] : told) {
+    std::ranges::sort(what.bodies, {}, [](const btRigidBody* body) { return body->getUserIndex(); });
+    const auto twins = std::ranges::unique(what.bodies);
+    what.bodies.erase(twins.begin(), twins.end());
+    parcel_.clear();
+    parcel_.put(static_cast<std::uint32_t>(what.bodies.size()));
+    for (const btRigidBody* body : what.bodies) write_body(*body, islands.moves(slot_of(*body)), parcel_);
+    std::size_t patches = 0;
+    for (const auto& [touch, phase] : what.touches) patches += touch->patches;
+    parcel_.put(static_cast<std::uint32_t>(patches));
+    for (const auto& [touch, phase] : what.touches) {
+      for (const SoftPatch& patch : contacts.patches_of(*touch)) {
+        for (const int end : {touch->a, touch->b}) {
+          parcel_.put(core::value_of(place_of(*by_index[static_cast<std::size_t>(end)]).id));
+        }
+        parcel_.put(static_cast<std::int32_t>(touch->parts.part0));
+        parcel_.put(static_cast<std::int32_t>(touch->parts.part1));
+        parcel_.put(static_cast<std::uint8_t>(phase));
+        write_patch(patch, parcel_);
+      }
+    }
+    coupling_.mail->post(peer, parcel_.bytes());
+  }
+  foreign_.clear();
+  foreign_patches_.clear();
+  for_each_peer(coupling_, [&](core::RegionId peer) { read(peer); });
+  for (btRigidBody* body : bodies) {
+    if (!is_guest(*body)) continue;
+    const auto known = foreign_.find(place_of(*body).id);
+    islands.decide(*body, known != foreign_.end() && known->second.moves);
+  }
+}
+
+void SoftShared::read(core::RegionId from) {
+  ParcelReader parcel(coupling_.mail->fetch(from));
+  for (std::uint32_t left = parcel.take_count(kBodyBytes); left > 0; --left) {
+    const core::BodyId id{parcel.take<std::uint64_t>()};
+    Foreign& body = foreign_[id];
+    body.host = from;
+    body.moves = parcel.take<std::uint8_t>() != 0;
+    body.inertia.inv_mass = parcel.take<Real>();
+    parcel.take_some(body.inertia.inv_inertia, 6);
+    parcel.take_some(body.v, 3), parcel.take_some(body.w, 3);
+  }
+  for (std::uint32_t left = parcel.take_count(kLeastPatchBytes); left > 0; --left) {
+    ForeignPatch& patch = foreign_patches_.emplace_back();
+    patch.a = core::BodyId{parcel.take<std::uint64_t>()}, patch.b = core::BodyId{parcel.take<std::uint64_t>()};
+    patch.parts.part0 = parcel.take<std::int32_t>(), patch.parts.part1 = parcel.take<std::int32_t>();
+    const auto phase = parcel.take<std::uint8_t>();
+    patch.phase = static_cast<SoftPhase>(phase);
+    if (patch.phase != SoftPhase::kCorners && patch.phase != SoftPhase::kGiants) {
+      throw BadParcel("a contact of another region has an unknown phase");
+    }
+    patch.patch = read_patch(parcel);
+  }
+  if (!parcel.at_end()) throw BadParcel("a parcel between regions is too long");
+}
+
+void SoftShared::make_room(std::vector<btRigidBody*>& held) {
+  for (auto& waiting : waiting_) waiting.clear();
+  for (auto& rows : rows_) rows.clear();
+  known_.assign(held.size(), {});
+  for (std::size_t i = 1; i < held.size(); ++i) {
+    const BodyPlace& place = place_of(*held[i]);
+    known_[i] = {place.id, place.is_guest ? place.host : coupling_.self};
+    if (!place.is_guest) continue;
+    if (const auto body = foreign_.find(place.id); body != foreign_.end()) {
+      body->second.mover = static_cast<std::int32_t>(i);
+    }
+  }
+  for (const ForeignPatch& patch : foreign_patches_) {
+    for (const core::BodyId id : {patch.a, patch.b}) {
+      const auto body = foreign_.find(id);
+      if (body == foreign_.end()) {
+        // One of ours: both ends of a contact between us and the teller are known to us, so this is a bad parcel.
+        throw BadParcel("a contact of another region names an unknown body");
+      }
+      if (!body->second.moves || body->second.mover > 0) continue;
+      body->second.mover = static_cast<std::int32_t>(held.size());
+      held.push_back(nullptr);
+      known_.push_back({id, body->second.host});
+    }
+  }
+}
+
+void SoftShared::take_in(Mover* movers, std::vector<SoftInertia>& inertias) const {
+  for (const auto& [id, body] : foreign_) {
+    if (body.mover == 0) continue;
+    Mover& mover = movers[body.mover];
+    mover = {};
+    std::copy_n(body.v, 3, mover.v), std::copy_n(body.w, 3, mover.w);
+    inertias[static_cast<std::size_t>(body.mover)] = body.inertia;
+  }
+}
+
+void SoftShared::add(const SoftTouch& touch, std::span<SoftPatch> found, std::int32_t a, std::int32_t b,
+                     SoftPhase phase, std::size_t group) {
+  const bool both_move = a > 0 && b > 0;
+  const bool waits = both_move && phase >= SoftPhase::kCorners;
+  const std::size_t first = placed_.size();
+  for (SoftPatch& patch : found) {
+    if (waits) {
+      waiting_[static_cast<std::size_t>(phase)].push_back({known(a).id, known(b).id, touch.parts, a, b, &patch});
+    } else {
+      placed_.push_back({&patch, a, b, phase, group});
+    }
+  }
+  if (!both_move || phase != SoftPhase::kEdges || known(a).host == known(b).host) return;
+  const bool a_is_ours = known(a).host == coupling_.self;
+  Rows& with = rows_[static_cast<std::size_t>(phase)][known(a_is_ours ? b : a).host];
+  with.ours.push_back(a_is_ours ? a : b);
+  with.theirs.push_back(a_is_ours ? b : a);
+  for (std::size_t i = first; i < placed_.size(); ++i) with.patches.push_back(i);
+}
+
+void SoftShared::settle() {
+  for (ForeignPatch& foreign : foreign_patches_) {
+    const Foreign &a = foreign_.at(foreign.a), &b = foreign_.at(foreign.b);
+    if (!a.moves || !b.moves) continue;
+    waiting_[static_cast<std::size_t>(foreign.phase)].push_back(
+        {foreign.a, foreign.b, foreign.parts, a.mover, b.mover, &foreign.patch});
+  }
+  settle(SoftPhase::kCorners);
+  settle(SoftPhase::kGiants);
+  for (auto& of_phase : rows_) {
+    for (auto& [host, rows] : of_phase) {
+      for (std::vector<std::int32_t>* const movers : {&rows.ours, &rows.theirs}) {
+        std::ranges::sort(*movers, {}, [this](std::int32_t mover) { return known(mover).id; });
+        const auto twins = std::ranges::unique(*movers);
+        movers->erase(twins.begin(), twins.end());
+      }
+    }
+  }
+}
+
+/// Contacts that hang together are solved by all regions that host a body of them, and by no other.
+void SoftShared::settle(SoftPhase phase) {
+  std::vector<Waiting>& waiting = waiting_[static_cast<std::size_t>(phase)];
+  std::ranges::stable_sort(waiting, {}, [](const Waiting& w) {
+    return std::tuple(std::max(w.a, w.b), std::min(w.a, w.b), w.a, w.parts.part0, w.parts.part1);
+  });
+  std::vector<std::int32_t> parents(known_.size());
+  std::iota(parents.begin(), parents.end(), 0);
+  const auto root = [&](std::int32_t mover) {
+    while (parents[static_cast<std::size_t>(mover)] != mover) mover = parents[static_cast<std::size_t>(mover)];
+    return mover;
+  };
+  for (const Waiting& w : waiting) {
+    const std::int32_t a = root(w.mover_a), b = root(w.mover_b);
+    parents[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+  }
+  struct Chain {
+    std::vector<std::int32_t> movers;
+    std::vector<std::size_t> patches;
+    bool ours = false;
+  };
+  std::map<std::int32_t, Chain> chains;
+  for (const Waiting& w : waiting) {
+    Chain& chain = chains[root(w.mover_a)];
+    for (const std::int32_t mover : {w.mover_a, w.mover_b}) {
+      chain.movers.push_back(mover);
+      chain.ours = chain.ours || known(mover).host == coupling_.self;
+    }
+  }
+  for (const Waiting& w : waiting) {
+    Chain& chain = chains[root(w.mover_a)];
+    if (!chain.ours) continue;
+    chain.patches.push_back(placed_.size());
+    placed_.push_back({w.patch, w.mover_a, w.mover_b, phase, 0});  // one group: a chain may be anywhere
+  }
+  auto& rows = rows_[static_cast<std::size_t>(phase)];
+  for (const auto& [first, chain] : chains) {
+    if (!chain.ours) continue;
+    for (const std::int32_t theirs : chain.movers) {
+      const core::RegionId host = known(theirs).host;
+      if (host == coupling_.self) continue;
+      rows[host].theirs.push_back(theirs);
+    }
+    for (auto& [host, with] : rows) {
+      const auto is_theirs = [&, region = host](std::int32_t mover) { return known(mover).host == region; };
+      if (std::ranges::none_of(chain.movers, is_theirs)) continue;
+      with.patches.insert(with.patches.end(), chain.patches.begin(), chain.patches.end());
+      for (const std::int32_t ours : chain.movers) {
+        if (known(ours).host == coupling_.self) with.ours.push_back(ours);
+      }
+    }
+  }
+}
+
+void SoftShared::note_bounces(const SoftPatches& patches) {
+  for (auto& of_phase : rows_) {
+    for (auto& [host, rows] : of_phase) {
+      rows.bounces = std::ranges::any_of(rows.patches, [&](std::size_t i) { return patches.may_bounce(i); });
+    }
+  }
+}
+
+void SoftShared::exchange(SoftPhase phase, bool bounces, Mover* movers) {
+  const auto& rows = rows_[static_cast<std::size_t>(phase)];
+  for (const auto& [host, with] : rows) {
+    if (bounces && !with.bounces) continue;
+    parcel_.clear();
+    for (const std::int32_t ours : with.ours) write_row(movers[ours], parcel_);
+    coupling_.mail->post(host, parcel_.bytes());
+  }
+  for (const auto& [host, with] : rows) {
+    if (bounces && !with.bounces) continue;
+    const std::span<const std::byte> bytes = coupling_.mail->fetch(host);
+    if (bytes.size() != with.theirs.size() * kRow * sizeof(Real)) {
+      throw BadParcel("another region sent other bodies than those in common contacts");
+    }
+    ParcelReader parcel(bytes);
+    for (const std::int32_t theirs : with.theirs) read_row(movers[theirs], parcel);
+  }
+}
+
+}  // namespace aurasim::physics

@@ -1,0 +1,46 @@
+// Parcels between coupled regions of one process, each of which steps in a thread of its own. Only one of the threads
+// runs at a time, so what they share needs no lock.
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/seam_mail.h"
+
+namespace aurasim::transport {
+
+class MemorySeams {
+ public:
+  explicit MemorySeams(std::size_t regions);
+  ~MemorySeams();
+
+  core::SeamMail& of(core::RegionId region);
+  /// Runs the works, one for each region, until all have ended. Throws what the first region throws that ended so.
+  void run(std::span<const std::function<void()>> works);
+  /// True if all parcels have been fetched.
+  bool is_empty() const;
+  /// Number of parcels so far.
+  std::size_t count() const { return count_; }
+
+ private:
+  class Box;
+
+  void put(core::RegionId from, core::RegionId to, std::span<const std::byte> parcel);
+  std::vector<std::byte> take(core::RegionId from, core::RegionId to);
+
+  std::mutex mutex_;  ///< held by the thread that runs
+  std::condition_variable arrived_;
+  std::map<std::pair<core::RegionId, core::RegionId>, std::deque<std::vector<std::byte>>> parcels_;
+  std::size_t count_ = 0;
+  bool closed_ = false;
+  std::vector<std::unique_ptr<Box>> boxes_;
+};
+
+}  // namespace aurasim::transport
