@@ -28,23 +28,22 @@ core::SeamMail& MemorySeams::of(core::RegionId region) { return *boxes_.at(core:
 
 void MemorySeams::run(std::span<const std::function<void()>> works) {
   closed_ = false;
-  std::vector<std::exception_ptr> errors(works.size());
+  std::exception_ptr first;
   std::vector<std::thread> threads;
   for (std::size_t i = 0; i < works.size(); ++i) {
-    threads.emplace_back([this, i, &works, &errors] {
+    threads.emplace_back([this, i, &works, &first] {
       const std::lock_guard turn(mutex_);
       try {
         works[i]();
       } catch (...) {
-        errors[i] = std::current_exception();
+        if (!closed_) first = std::current_exception();
         closed_ = true;  // the others would wait in vain
         arrived_.notify_all();
       }
     });
   }
   for (std::thread& thread : threads) thread.join();
-  const auto error = std::ranges::find_if(errors, [](const std::exception_ptr& e) { return e != nullptr; });
-  if (error != errors.end()) std::rethrow_exception(*error);
+  if (first) std::rethrow_exception(first);
 }
 
 void MemorySeams::put(core::RegionId from, core::RegionId to, std::span<const std::byte> parcel) {

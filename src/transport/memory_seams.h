@@ -22,7 +22,7 @@ class MemorySeams {
   ~MemorySeams();
 
   core::SeamMail& of(core::RegionId region);
-  /// Runs the works, one for each region, until all have ended. Throws what the first region throws that ended so.
+  /// Runs the works, one for each region, until all have ended. Throws what the first work threw that ended so.
   void run(std::span<const std::function<void()>> works);
   /// True if all parcels have been fetched.
   bool is_empty() const;

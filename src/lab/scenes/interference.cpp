@@ -196,7 +196,12 @@ void ImpatientClient::ask(node::Node& lead) {
 }
 
 Programs::Programs(const std::vector<Word>& words, VirtualCluster& listeners, core::Step from)
-    : words_(words), listeners_(listeners), from_(from), next_(listeners.size(), 0) {}
+    : words_(words), listeners_(listeners), from_(from), next_(listeners.size(), 0) {
+  if (!listeners.is_coupled()) return;
+  // Coupled nodes learn of a static's move by an order, which takes two states.
+  for (Word& word : words_) word.said_step = std::min(word.said_step, word.setpoints.at_step - 2);
+  std::ranges::stable_sort(words_, {}, &Word::said_step);
+}
 
 void Programs::speak() {
   for (std::size_t r = 0; r < listeners_.size(); ++r) speak(listeners_.node(r), next_[r]);
@@ -205,10 +210,7 @@ void Programs::speak() {
 void Programs::speak(node::Node& node, std::size_t& next) const {
   for (; next < words_.size(); ++next) {
     const Word& word = words_[next];
-    core::Step said = word.said_step;
-    // Coupled nodes learn of a static's move by an order, which takes two states.
-    if (listeners_.is_coupled() && !word.setpoints.statics.empty()) said = std::min(said, word.setpoints.at_step - 2);
-    if (said > node.current_step()) return;
+    if (word.said_step > node.current_step()) return;
     if (word.setpoints.at_step > from_) node.hear(word.setpoints);
   }
 }

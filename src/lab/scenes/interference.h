@@ -83,7 +83,7 @@ class Programs {
  private:
   void speak(node::Node& node, std::size_t& next) const;
 
-  const std::vector<Word>& words_;
+  std::vector<Word> words_;
   VirtualCluster& listeners_;
   core::Step from_;
   std::vector<std::size_t> next_;  ///< by node

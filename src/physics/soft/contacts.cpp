@@ -201,13 +201,28 @@ void SoftContacts::look(List& list, btOverlappingPairCache& pairs, int first, in
 }
 
 void SoftContacts::add_woken(btOverlappingPairCache& pairs) {
+  add_touches_of_sleepers(pairs,
+                          [this](const Slots& s) { return islands_.is_woken(s.a) || islands_.is_woken(s.b); });
+}
+
+void SoftContacts::add_woken_guests(btOverlappingPairCache& pairs) {
+  const auto is_woken_guest = [this](std::uint32_t slot) {
+    return islands_.is_woken(slot) && islands_.is_guest(slot);
+  };
+  add_touches_of_sleepers(pairs, [this, is_woken_guest](const Slots& s) {
+    return (is_woken_guest(s.a) && !islands_.is_woken(s.b)) || (is_woken_guest(s.b) && !islands_.is_woken(s.a));
+  });
+}
+
+/// Adds the touches of pairs that slept at the start of the step, where wanted(slots) is true.
+template <class Wanted>
+void SoftContacts::add_touches_of_sleepers(btOverlappingPairCache& pairs, Wanted&& wanted) {
   btBroadphasePairArray& all = pairs.getOverlappingPairArray();
   List& list = lists_[0];
   const std::size_t before = list.touches.size();
   for (int i = 0; i < all.size(); ++i) {
     const Slots slots = slots_of(all[i]);
-    const bool both_slept = islands_.sleeps(slots.a) && islands_.sleeps(slots.b);
-    if (both_slept && (islands_.is_woken(slots.a) || islands_.is_woken(slots.b))) collect(list, all[i]);
+    if (islands_.sleeps(slots.a) && islands_.sleeps(slots.b) && wanted(slots)) collect(list, all[i]);
   }
   touches_.insert(touches_.end(), list.touches.begin() + static_cast<std::ptrdiff_t>(before), list.touches.end());
 }

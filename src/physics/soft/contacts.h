@@ -47,6 +47,9 @@ class SoftContacts {
   /// Adds the touches among bodies that have been woken since look().
   void add_woken(btOverlappingPairCache& pairs);
 
+  /// Adds the touches of sleepers with guests that have been woken since look().
+  void add_woken_guests(btOverlappingPairCache& pairs);
+
   /// Way of an object in a step if it touches nothing, m.
   btVector3 way(const btCollisionObject& object, const btVector3& gravity) const;
 
@@ -85,6 +88,8 @@ class SoftContacts {
   void look(List& list, btOverlappingPairCache& pairs, int first, int last, btCollisionDispatcher& dispatcher,
             const btDispatcherInfo& info);
   void look(List& list, btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info);
+  template <class Wanted>
+  void add_touches_of_sleepers(btOverlappingPairCache& pairs, Wanted&& wanted);
   void collect(List& list, const btBroadphasePair& pair);
   void collect_of_sleepers(List& list, const btBroadphasePair& pair);
   void gather(const soft::Worker& worker);

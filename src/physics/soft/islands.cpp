@@ -66,7 +66,7 @@ void SoftIslands::insert(btRigidBody& body) {
   free_.pop_back();
   body.setUserIndex3(static_cast<int>(slot));
   entries_[slot].body = &body;
-  entries_[slot].is_guest = is_guest(body);
+  entries_[slot].is_guest = physics::is_guest(body);
   place_of(body).changes = &changes_;
   changes_.push_back(slot);
 }

@@ -73,6 +73,7 @@ class SoftIslands {
   // After settle():
   /// Does the body move in the step, as far as this region knows?
   bool moves(std::uint32_t slot) const { return has(slot, kMoves); }
+  bool is_guest(std::uint32_t slot) const { return entries_[slot].is_guest; }
   /// Makes a guest move in the step or not, as its host has decided.
   void decide(btRigidBody& guest, bool moves);
   // After rest():

@@ -77,6 +77,29 @@ void write_body(const btRigidBody& body, bool moves, ParcelWriter& parcel) {
   soft::from_bullet(body.getLinearVelocity(), v), soft::from_bullet(body.getAngularVelocity(), w);
   parcel.put_some(v, 3), parcel.put_some(w, 3);
 }
+/// The impulses that the last step has left in the points of a touch.
+void write_impulses(const SoftTouch& touch, ParcelWriter& parcel) {
+  const int count = touch.manifold != nullptr ? touch.manifold->getNumContacts() : 0;
+  parcel.put(static_cast<std::uint8_t>(count));
+  for (int i = 0; i < count; ++i) {
+    const btManifoldPoint& point = touch.manifold->getContactPoint(i);
+    parcel.put(point.m_appliedImpulse), parcel.put(point.m_appliedImpulseLateral1);
+    parcel.put(point.m_appliedImpulseLateral2), parcel.put(point.m_prevRHS);
+  }
+}
+
+void read_impulses(ParcelReader& parcel, const SoftTouch& touch) {
+  const int count = touch.manifold != nullptr ? touch.manifold->getNumContacts() : 0;
+  if (parcel.take<std::uint8_t>() != count) throw BadParcel("another region has other points of a common contact");
+  for (int i = 0; i < count; ++i) {
+    btManifoldPoint& point = touch.manifold->getContactPoint(i);
+    point.m_appliedImpulse = parcel.take<btScalar>();
+    point.m_appliedImpulseLateral1 = parcel.take<btScalar>();
+    point.m_appliedImpulseLateral2 = parcel.take<btScalar>();
+    point.m_prevRHS = parcel.take<btScalar>();
+  }
+}
+
 constexpr std::size_t kBodyBytes = 8 + 1 + 13 * sizeof(Real);
 constexpr std::size_t kLeastPatchBytes = 8 + 8 + 8 + 1 + 13 * sizeof(Real) + 1;
 
@@ -136,7 +159,7 @@ void SoftShared::tell_stirs(SoftIslands& islands) {
 
 void SoftShared::call_sleepers(SoftIslands& islands) {
   std::map<core::RegionId, ParcelWriter> ours;
-  std::map<core::RegionId, std::vector<std::uint32_t>> theirs;
+  std::map<core::RegionId, std::vector<std::pair<std::uint32_t, const SoftTouch*>>> theirs;
   for (const SoftTouch& touch : islands.touches()) {
     if (touch.slot_a == 0 || touch.slot_b == 0) continue;
     const bool a_moves = islands.moves(touch.slot_a);
@@ -146,22 +169,25 @@ void SoftShared::call_sleepers(SoftIslands& islands) {
     if (is_guest(moved) == is_guest(asleep)) continue;
     if (is_guest(asleep)) {
       const bool is_calm = moved.getActivationState() == WANTS_DEACTIVATION;
-      ours[place_of(asleep).host].put(static_cast<std::uint8_t>(!is_calm));
+      ParcelWriter& parcel = ours[place_of(asleep).host];
+      parcel.put(static_cast<std::uint8_t>(!is_calm));
+      write_impulses(touch, parcel);
     } else {
-      theirs[place_of(moved).host].push_back(sleeper);
+      theirs[place_of(moved).host].emplace_back(sleeper, &touch);
     }
   }
   for (const auto& [host, parcel] : ours) coupling_.mail->post(host, parcel.bytes());
   for (const auto& [host, sleepers] : theirs) {
     ParcelReader parcel(coupling_.mail->fetch(host));
-    for (const std::uint32_t sleeper : sleepers) {
+    for (const auto& [sleeper, touch] : sleepers) {
       if (parcel.take<std::uint8_t>() != 0) islands.call(sleeper);
+      read_impulses(parcel, *touch);
     }
     if (!parcel.at_end()) throw BadParcel("a parcel between regions is too long");
   }
 }
 
-void SoftShared::meet(std::span<btRigidBody* const> bodies, SoftContacts& contacts, SoftIslands& islands) {
+bool SoftShared::meet(std::span<btRigidBody* const> bodies, SoftContacts& contacts, SoftIslands& islands) {
   std::vector<btRigidBody*> by_index;
   for (btRigidBody* body : bodies) {
     const auto index = static_cast<std::size_t>(body->getUserIndex());
@@ -223,11 +249,14 @@ void SoftShared::meet(std::span<btRigidBody* const> bodies, SoftContacts& contac
   foreign_.clear();
   foreign_patches_.clear();
   for_each_peer(coupling_, [&](core::RegionId peer) { read(peer); });
+  bool any_woken = false;
   for (btRigidBody* body : bodies) {
     if (!is_guest(*body)) continue;
     const auto known = foreign_.find(place_of(*body).id);
     islands.decide(*body, known != foreign_.end() && known->second.moves);
+    any_woken = any_woken || islands.is_woken(slot_of(*body));
   }
+  return any_woken;
 }
 
 void SoftShared::read(core::RegionId from) {
@@ -270,11 +299,7 @@ void SoftShared::make_room(std::vector<btRigidBody*>& held) {
   for (const ForeignPatch& patch : foreign_patches_) {
     for (const core::BodyId id : {patch.a, patch.b}) {
       const auto body = foreign_.find(id);
-      if (body == foreign_.end()) {
-        // One of ours: both ends of a contact between us and the teller are known to us, so this is a bad parcel.
-        throw BadParcel("a contact of another region names an unknown body");
-      }
-      if (!body->second.moves || body->second.mover > 0) continue;
+      if (body == foreign_.end() || !body->second.moves || body->second.mover > 0) continue;
       body->second.mover = static_cast<std::int32_t>(held.size());
       held.push_back(nullptr);
       known_.push_back({id, body->second.host});
@@ -295,6 +320,8 @@ void SoftShared::take_in(Mover* movers, std::vector<SoftInertia>& inertias) cons
 void SoftShared::add(const SoftTouch& touch, std::span<SoftPatch> found, std::int32_t a, std::int32_t b,
                      SoftPhase phase, std::size_t group) {
   const bool both_move = a > 0 && b > 0;
+  const std::int32_t any = std::max(a, b);
+  if (!both_move && any > 0 && known(any).host != coupling_.self) return;  // its host alone solves it
   const bool waits = both_move && phase >= SoftPhase::kCorners;
   const std::size_t first = placed_.size();
   for (SoftPatch& patch : found) {
@@ -314,10 +341,11 @@ void SoftShared::add(const SoftTouch& touch, std::span<SoftPatch> found, std::in
 
 void SoftShared::settle() {
   for (ForeignPatch& foreign : foreign_patches_) {
-    const Foreign &a = foreign_.at(foreign.a), &b = foreign_.at(foreign.b);
-    if (!a.moves || !b.moves) continue;
+    // A sleeper whose host has not found the contact is not told of.
+    const auto a = foreign_.find(foreign.a), b = foreign_.find(foreign.b);
+    if (a == foreign_.end() || b == foreign_.end() || !a->second.moves || !b->second.moves) continue;
     waiting_[static_cast<std::size_t>(foreign.phase)].push_back(
-        {foreign.a, foreign.b, foreign.parts, a.mover, b.mover, &foreign.patch});
+        {foreign.a, foreign.b, foreign.parts, a->second.mover, b->second.mover, &foreign.patch});
   }
   settle(SoftPhase::kCorners);
   settle(SoftPhase::kGiants);

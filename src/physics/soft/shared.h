@@ -36,8 +36,8 @@ class SoftShared {
   void call_sleepers(SoftIslands& islands);
 
   /// Tells the other regions which contacts were found and which bodies move, and learns the same of them. Guests then
-  /// move if their hosts say so. `bodies`: all that are not static.
-  void meet(std::span<btRigidBody* const> bodies, SoftContacts& contacts, SoftIslands& islands);
+  /// move if their hosts say so. `bodies`: all that are not static. Returns true if a guest is woken.
+  bool meet(std::span<btRigidBody* const> bodies, SoftContacts& contacts, SoftIslands& islands);
 
   /// Appends an empty place to `held` (bodies by mover) for each body that is only known from contacts of others.
   void make_room(std::vector<btRigidBody*>& held);
