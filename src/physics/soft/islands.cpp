@@ -97,6 +97,7 @@ void SoftIslands::unlist(std::uint32_t slot) {
   (*list)[entries_[slot].place] = last;
   entries_[slot_of(*last)].place = entries_[slot].place;
   list->pop_back();
+  is_in_order_ = false;
 }
 
 void SoftIslands::put_into(std::vector<btRigidBody*>& list, std::uint32_t slot) {
@@ -106,6 +107,7 @@ void SoftIslands::put_into(std::vector<btRigidBody*>& list, std::uint32_t slot) 
     entry.list = &list;
     entry.place = static_cast<std::uint32_t>(list.size());
     list.push_back(entry.body);
+    is_in_order_ = false;
   }
   if (&list != &asleep_ || entry.settles) return;
   entry.settles = true;
@@ -117,6 +119,7 @@ void SoftIslands::call() {
     if (btRigidBody* const body = entries_[slot].body) put_into(body->isActive() ? awake_ : asleep_, slot);
   }
   changes_.clear();
+  if (!is_in_order_) put_in_order();
   for (std::size_t i = 0; i < awake_.size(); ++i) {
     if (i + kPrefetchDistance < awake_.size()) prefetch_flags(*awake_[i + kPrefetchDistance]);
     note(*awake_[i]);
@@ -130,6 +133,18 @@ void SoftIslands::call() {
   if (knows_sleepers_) return;
   std::iota(parents_.begin(), parents_.end(), 0U);
   seams_of_sleepers_.clear();
+}
+
+/// Puts the awake bodies in the order of their slots, as they mostly lie in memory.
+void SoftIslands::put_in_order() {
+  order_.clear();
+  for (const btRigidBody* body : awake_) order_.push_back(slot_of(*body));
+  std::ranges::sort(order_);
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    awake_[i] = entries_[order_[i]].body;
+    entries_[order_[i]].place = static_cast<std::uint32_t>(i);
+  }
+  is_in_order_ = true;
 }
 
 /// Brings what is known of a body up to date. Sleepers are skipped once nothing of it changes any more.

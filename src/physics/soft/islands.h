@@ -134,6 +134,7 @@ class SoftIslands {
   void note(btRigidBody& body);
   void unlist(std::uint32_t slot);
   void put_into(std::vector<btRigidBody*>& list, std::uint32_t slot);
+  void put_in_order();
   std::uint32_t part_of(std::uint32_t slot);
   void mark(std::uint32_t slot, Part what);
   bool is(std::uint32_t slot, int what) { return (parts_[part_of(slot)] & what) != 0; }
@@ -158,6 +159,8 @@ class SoftIslands {
   std::vector<std::uint32_t> settling_;  ///< sleepers whose flags may still change
   std::vector<std::uint32_t> marked_;    ///< parts with flags
   bool knows_sleepers_ = true;
+  std::vector<std::uint32_t> order_;  ///< space for put_in_order()
+  bool is_in_order_ = true;
   bool wakes_any_ = false;
   bool has_woken_any_ = false;
   std::vector<btRigidBody*> awake_;
