@@ -78,7 +78,7 @@ class DynamicsWorld {
 
   /// Appends the user indices of bodies whose boxes in the broadphase come within Bounds::kNear_m of `bounds`.
   void find_near(const Bounds& bounds, std::vector<std::uint32_t>& found) const;
-  /// The threads that step this world.
+  /// The threads that step this world. They rest() between steps.
   soft::Team& team();
 
   FirstContacts& first_contacts();

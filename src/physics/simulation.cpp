@@ -17,6 +17,7 @@
 #include "physics/moving_body.h"
 #include "physics/part_surfaces.h"
 #include "physics/prefetch.h"
+#include "physics/soft/threads.h"
 
 namespace aurasim::physics {
 namespace {
@@ -244,6 +245,7 @@ void Simulation::step() {
     joints_.finish_look(world_);
   }
   note_moved();
+  world_.team().rest();
   stop_pushing();
   ++step_;
   place_moving_statics();

@@ -13,9 +13,10 @@ namespace {
 constexpr std::uint32_t kMostThreads = 128;
 /// A thread with fewer bodies costs more than it saves.
 constexpr std::size_t kBodiesOfThread = 32;
-/// How often a waiting thread looks again before it sleeps: some 100 us. It does not yield its core meanwhile, because
-/// Linux lets a thread that yields often wait for a slice of every other one.
-constexpr int kSpins = 4000;
+/// How often a waiting thread looks again before it sleeps: some 1 ms. What one thread computes alone in a step rarely
+/// takes longer. A thread that sleeps where another process wants the core, too, may have to wait for a slice of it
+/// (some 3 ms). For the same reason it does not yield the core.
+constexpr int kSpins = 40000;
 
 /// Sleeps until wake_all() for the same word, unless it is not `from` any more. May return earlier.
 void sleep_while(const std::atomic<std::uint32_t>& word, std::uint32_t from) {
@@ -51,6 +52,7 @@ void Team::run(Call call, const void* job) {
     const int number = static_cast<int>(threads_.size()) + 1;
     threads_.emplace_back([this, number] { serve(number); });
   }
+  rests_.store(false, std::memory_order_relaxed);
   call_ = call;
   job_ = const_cast<void*>(job);
   const std::uint32_t number = start_.load(std::memory_order_relaxed) / kMostThreads;
@@ -91,7 +93,7 @@ void Team::change(std::atomic<std::uint32_t>& word, std::uint32_t to) {
 }
 
 void Team::await_change(const std::atomic<std::uint32_t>& word, std::uint32_t from) {
-  for (int i = 0; i < spins_; ++i) {
+  for (int i = 0; i < spins_ && !rests_.load(std::memory_order_relaxed); ++i) {
     if (word.load(std::memory_order_acquire) != from) return;
     pause();
   }

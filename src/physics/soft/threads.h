@@ -41,8 +41,8 @@ struct Worker {
   inline void wait() const;
 };
 
-/// The threads of one world. They start when there is work for them first. A thread that waits for
-/// the others looks again and again for some 100 us, then it sleeps.
+/// The threads of one world. They start when there is work for them first. A thread that waits
+/// within a step looks again and again for some 1 ms, then it sleeps; between steps it sleeps at once.
 class Team {
  public:
   /// At most `threads` threads, with the one that calls.
@@ -58,6 +58,8 @@ class Team {
   /// Chooses how many threads work from now on. With few bodies the threads would wait for each other longer than they
   /// work.
   void employ_for(std::size_t bodies);
+  /// Lets the other threads sleep at once until the next job, which comes only in the next step.
+  void rest() { rests_.store(true, std::memory_order_relaxed); }
 
   /// Calls work(Worker) in all employed threads at once. Returns when all are done.
   template <class Work>
@@ -94,6 +96,7 @@ class Team {
   void* job_ = nullptr;
   /// Number of the job, times kMostThreads, plus the number of threads that work on it. 0: the team is dismissed.
   alignas(64) std::atomic<std::uint32_t> start_{1};
+  std::atomic<bool> rests_{false};
   alignas(64) std::atomic<std::uint32_t> arrived_{0};  ///< threads that wait for the others
   alignas(64) std::atomic<std::uint32_t> waits_{0};
   std::atomic<int> sleepers_{0};
