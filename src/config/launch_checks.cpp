@@ -97,8 +97,8 @@ void check_coupled(const Field& regions, const Launch& launch) {
   try {
     core::BlockOwners(launch.regions, launch.block_m(), 0);
   } catch (const core::BadRegionMap& problem) {
-    regions.complain(fmt::format("{}, allowed with exchange: coupled: regions at least as wide as physics.block",
-                                 problem.what()));
+    regions.complain(
+        fmt::format("{}, allowed with exchange: coupled: regions at least as wide as physics.block", problem.what()));
   }
 }
 

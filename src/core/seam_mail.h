@@ -23,7 +23,8 @@ class SeamMail {
   virtual void begin(Generation, Step) {}
   /// Posts a parcel. Parcels to one region arrive in the order in which they were posted.
   virtual void post(RegionId to, std::span<const std::byte> parcel) = 0;
-  /// Waits for the next parcel from a region. Valid until the next call for that region. Throws SeamsBroken if it will not come.
+  /// Waits for the next parcel from a region. Valid until the next call for that region. Throws SeamsBroken if it will
+  /// not come.
   virtual std::span<const std::byte> fetch(RegionId from) = 0;
 };
 

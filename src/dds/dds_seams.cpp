@@ -82,9 +82,9 @@ bool DdsSeams::Impl::take(core::RegionId from, Peer& peer) {
     const bool is_next = parcel.header.generation == generation && parcel.header.step == step &&
                          parcel.header.number == peer.fetched + 1;
     if (!is_next) {
-      throw core::SeamsBroken(fmt::format("region {} is in another step: parcel {} of state {} came instead of {} of {}",
-                                          core::value_of(from), parcel.header.number, parcel.header.step,
-                                          peer.fetched + 1, step));
+      throw core::SeamsBroken(
+          fmt::format("region {} is in another step: parcel {} of state {} came instead of {} of {}",
+                      core::value_of(from), parcel.header.number, parcel.header.step, peer.fetched + 1, step));
     }
     ++peer.fetched;
     peer.last = std::move(parcel);

@@ -363,7 +363,8 @@ bool DdsTransport::all_matched() const {
 
 std::size_t DdsTransport::found() const {
   std::size_t found = 0;
-  for (const auto& link : impl_->links) found += kEndpointsOfALink + (impl_->seams ? 2 : 0) - impl_->unmatched(*link).size();
+  for (const auto& link : impl_->links)
+    found += kEndpointsOfALink + (impl_->seams ? 2 : 0) - impl_->unmatched(*link).size();
   return found;
 }
 

@@ -37,7 +37,7 @@ struct BrokenLink {
 struct ClusterRules {
   core::AuraRules aura;
   core::SyncMode sync = core::SyncMode::kBounded;
-  bool coupled = false;  ///< regions are coupled (physics/coupling.h): all nodes compute a state at once
+  bool coupled = false;       ///< regions are coupled (physics/coupling.h): all nodes compute a state at once
   physics::Settings physics;  ///< steps and substeps are taken from `aura` instead
   core::ControlRules control;
   double neighbour_distance_m = kEverywhere_m;

@@ -246,7 +246,7 @@ class Node {
   const core::RegionMap* map_;
   transport::Transport* transport_;
   std::unique_ptr<core::ClearanceQuery> clearance_;
-  std::optional<core::Protocol> protocol_;  ///< never empty; replaced when the run goes back or the map changes
+  std::optional<core::Protocol> protocol_;   ///< never empty; replaced when the run goes back or the map changes
   std::optional<core::BlockOwners> owners_;  ///< if regions are coupled
   physics::RegionWorld world_;
   CollisionWatch watch_;

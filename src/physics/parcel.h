@@ -56,8 +56,7 @@ class ParcelReader {
   bool at_end() const { return bytes_.empty(); }
 
   template <class T>
-  requires std::is_arithmetic_v<T>
-  T take() {
+  requires std::is_arithmetic_v<T> T take() {
     T value;
     take_some(&value, 1);
     return value;
@@ -77,8 +76,7 @@ class ParcelReader {
     return count;
   }
   template <class T>
-  requires std::is_arithmetic_v<T>
-  std::vector<T> take_all() {
+  requires std::is_arithmetic_v<T> std::vector<T> take_all() {
     std::vector<T> values(take_count(sizeof(T)));
     take_some(values.data(), values.size());
     return values;

@@ -123,7 +123,8 @@ class RegionWorld {
   /// bodies. Throws std::invalid_argument for a solver other than the soft step. step() then also throws BadParcel
   /// (physics/parcel.h).
   void couple(const Coupling& coupling);
-  /// Bodies that came in the last step, and bodies that left in it. Ascending by id. Those that came have their new epochs.
+  /// Bodies that came in the last step, and bodies that left in it. Ascending by id. Those that came have their new
+  /// epochs.
   const std::vector<Moved>& arrived() const;
   const std::vector<Moved>& left() const;
 

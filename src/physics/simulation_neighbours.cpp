@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <utility>
 #include <string>
+#include <utility>
 
 #include <LinearMath/btAabbUtil2.h>
 
@@ -34,9 +34,7 @@ bool is_within(const Bounds& bounds, const core::Rectangle& area) {
          bounds.high.y() <= area.y1;
 }
 
-bool overlap(const Bounds& a, const Bounds& b) {
-  return TestAabbAgainstAabb2(a.low, a.high, b.low, b.high);
-}
+bool overlap(const Bounds& a, const Bounds& b) { return TestAabbAgainstAabb2(a.low, a.high, b.low, b.high); }
 
 }  // namespace
 

@@ -37,8 +37,7 @@ struct Simulation::Copies {
   std::uint64_t across = 0;  ///< contacts and joints with bodies outside the cluster
 };
 
-Simulation::Copies Simulation::copy(const std::vector<std::uint32_t>& cluster_at, std::size_t count,
-                                     bool whole) const {
+Simulation::Copies Simulation::copy(const std::vector<std::uint32_t>& cluster_at, std::size_t count, bool whole) const {
   Copies copies;
   copies.clusters.resize(count);
   for (std::size_t i = 0; i < table_.size(); ++i) {

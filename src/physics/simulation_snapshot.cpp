@@ -6,8 +6,8 @@
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
 #include "core/progress.h"
-#include "physics/prefetch.h"
 #include "physics/moving_body.h"
+#include "physics/prefetch.h"
 #include "physics/simulation.h"
 
 namespace aurasim::physics {

@@ -1,9 +1,9 @@
 #include "physics/stepper.h"
 
-#include <stdexcept>
 #include <algorithm>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <vector>
 
 #include <BulletDynamics/ConstraintSolver/btConstraintSolver.h>

@@ -158,8 +158,7 @@ TEST(Coupled, OneWrongBitOfAMoverShows) {
 
 TEST(Coupled, BodiesComeToTheOwnersOfTheirBlocks) {
   const core::Scene scene = restless(scene_of_all_shapes());
-  const std::vector<BodyRecord> rolling = {body(1, kSphere, {-3, 0.1, 0.4}, {4, 0, 0}),
-                                           body(2, kBox, {5, 0.1, 0.45})};
+  const std::vector<BodyRecord> rolling = {body(1, kSphere, {-3, 0.1, 0.4}, {4, 0, 0}), body(2, kBox, {5, 0.1, 0.45})};
   CoupledWorlds many(scene, soft(), RegionMap::columns(2, 8), rolling);
   EXPECT_TRUE(many[0].contains(core::BodyId{1}));
   int left = 0;

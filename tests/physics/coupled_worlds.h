@@ -63,7 +63,8 @@ class CoupledWorlds {
  private:
   static std::vector<double> radii(const core::Scene& scene) {
     std::vector<double> all;
-    for (const core::Prototype& kind : scene.prototypes) all.push_back(core::bounding_radius(scene.shapes[kind.shape].shape));
+    for (const core::Prototype& kind : scene.prototypes)
+      all.push_back(core::bounding_radius(scene.shapes[kind.shape].shape));
     return all;
   }
 

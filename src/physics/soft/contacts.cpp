@@ -201,14 +201,11 @@ void SoftContacts::look(List& list, btOverlappingPairCache& pairs, int first, in
 }
 
 void SoftContacts::add_woken(btOverlappingPairCache& pairs) {
-  add_touches_of_sleepers(pairs,
-                          [this](const Slots& s) { return islands_.is_woken(s.a) || islands_.is_woken(s.b); });
+  add_touches_of_sleepers(pairs, [this](const Slots& s) { return islands_.is_woken(s.a) || islands_.is_woken(s.b); });
 }
 
 void SoftContacts::add_woken_guests(btOverlappingPairCache& pairs) {
-  const auto is_woken_guest = [this](std::uint32_t slot) {
-    return islands_.is_woken(slot) && islands_.is_guest(slot);
-  };
+  const auto is_woken_guest = [this](std::uint32_t slot) { return islands_.is_woken(slot) && islands_.is_guest(slot); };
   add_touches_of_sleepers(pairs, [this, is_woken_guest](const Slots& s) {
     return (is_woken_guest(s.a) && !islands_.is_woken(s.b)) || (is_woken_guest(s.b) && !islands_.is_woken(s.a));
   });

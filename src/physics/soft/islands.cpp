@@ -321,7 +321,7 @@ void SoftIslands::call_neighbours() {
   for (const SoftTouch& touch : touches_) {
     const bool a_moves = has(touch.slot_a, kMoves);
     if (a_moves == has(touch.slot_b, kMoves)) continue;
-    const Entry &moved = entries_[a_moves ? touch.slot_a : touch.slot_b];
+    const Entry& moved = entries_[a_moves ? touch.slot_a : touch.slot_b];
     const std::uint32_t slot = a_moves ? touch.slot_b : touch.slot_a;
     if (moved.is_guest || entries_[slot].is_guest) continue;
     if (moved.body->getActivationState() != WANTS_DEACTIVATION) call(slot);

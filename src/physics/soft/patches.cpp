@@ -9,7 +9,7 @@
 #include "core/progress.h"
 #include "physics/prefetch.h"
 #include "physics/soft/convert.h"
-#include "physics/soft/shared.h"
+#include "physics/soft/exchange.h"
 
 namespace aurasim::physics {
 namespace {
@@ -197,7 +197,7 @@ void SoftPatches::warm_start(Mover* movers, const soft::Worker& worker) {
   });
 }
 
-void SoftPatches::solve(Mover* movers, const soft::Substep& substep, SoftShared* shared, const soft::Worker& worker) {
+void SoftPatches::solve(Mover* movers, const soft::Substep& substep, SoftExchange* shared, const soft::Worker& worker) {
   if (worker.is_first()) core::Progress::mark();
   const auto work = [&](int, std::size_t first, std::size_t count, std::size_t points) {
     soft::kernel().solve(&blocks_[first], count, static_cast<int>(points), movers, substep);
@@ -206,7 +206,7 @@ void SoftPatches::solve(Mover* movers, const soft::Substep& substep, SoftShared*
   layout_.sweep_after(worker, work, [&](SoftPhase phase) { shared->exchange(phase, false, movers); });
 }
 
-void SoftPatches::bounce(Mover* movers, SoftShared* shared, const soft::Worker& worker) {
+void SoftPatches::bounce(Mover* movers, SoftExchange* shared, const soft::Worker& worker) {
   if (std::ranges::count(bounces_, 1) == 0) return;
   const auto work = [&](int, std::size_t first, std::size_t count, std::size_t points) {
     soft::kernel().bounce(&blocks_[first], count, static_cast<int>(points), movers, -kRestSpeed_m_s);

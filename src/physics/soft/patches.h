@@ -13,7 +13,7 @@
 
 namespace aurasim::physics {
 
-class SoftShared;
+class SoftExchange;
 
 /// Inverse mass and inertia of a body, in the world frame.
 struct SoftInertia {
@@ -34,9 +34,9 @@ class SoftPatches {
 
   // The next three are called by each worker for its share. They return when all workers are done.
   void warm_start(soft::Mover* movers, const soft::Worker& worker);
-  // `shared` exchanges movers with other regions before each phase; null if there are none.
-  void solve(soft::Mover* movers, const soft::Substep& substep, SoftShared* shared, const soft::Worker& worker);
-  void bounce(soft::Mover* movers, SoftShared* shared, const soft::Worker& worker);
+  // `shared`: with other regions; null if there are none.
+  void solve(soft::Mover* movers, const soft::Substep& substep, SoftExchange* shared, const soft::Worker& worker);
+  void bounce(soft::Mover* movers, SoftExchange* shared, const soft::Worker& worker);
 
   // Sums of the contact impulses over all substeps, for observers. They change nothing that is computed.
   /// Clears the sums, or switches them off. Call after build().

@@ -33,8 +33,8 @@ void read_row(Mover& mover, ParcelReader& parcel) {
 
 void write_patch(const SoftPatch& patch, ParcelWriter& parcel) {
   parcel.put_some(patch.normal, 3), parcel.put_some(patch.belt, 3);
-  for (const Real value : {patch.friction, patch.restitution, patch.spinning_m, patch.rolling_m, patch.rub_1,
-                           patch.rub_2, patch.twist}) {
+  for (const Real value :
+       {patch.friction, patch.restitution, patch.spinning_m, patch.rolling_m, patch.rub_1, patch.rub_2, patch.twist}) {
     parcel.put(value);
   }
   parcel.put(static_cast<std::uint8_t>(patch.count));

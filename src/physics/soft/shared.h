@@ -14,6 +14,7 @@
 
 #include "physics/coupling.h"
 #include "physics/parcel.h"
+#include "physics/soft/exchange.h"
 #include "physics/soft/patches.h"
 #include "physics/soft/seams.h"
 
@@ -24,12 +25,12 @@ namespace aurasim::physics {
 class SoftContacts;
 class SoftIslands;
 
-class SoftShared {
+class SoftShared final : public SoftExchange {
  public:
   SoftShared(const Coupling& coupling, double block_m) : coupling_(coupling), block_m_(block_m) {}
 
-  /// Tells the other regions which of the bodies that touch guests at their homes are in parts that stir, and learns the
-  /// same of guests. Call between SoftIslands::find_parts() and SoftIslands::settle().
+  /// Tells the other regions which of the bodies that touch guests at their homes are in parts that stir, and learns
+  /// the same of guests. Call between SoftIslands::find_parts() and SoftIslands::settle().
   void tell_stirs(SoftIslands& islands);
   /// Tells the hosts of sleepers whether what touched them is calm, and calls our own sleepers. Call after
   /// SoftIslands::rest().
@@ -62,9 +63,7 @@ class SoftShared {
   /// Notes which contacts may bounce. Call after SoftPatches::build().
   void note_bounces(const SoftPatches& patches);
 
-  /// Exchanges the movers for a phase. Bodies of other regions are then as their hosts have them. `bounces`: only
-  /// contacts with restitution count.
-  void exchange(SoftPhase phase, bool bounces, soft::Mover* movers);
+  void exchange(SoftPhase phase, bool bounces, soft::Mover* movers) override;
 
  private:
   /// A body of another region, as its host has told.
