@@ -69,7 +69,8 @@ TEST_F(Overrides, ErrorsNameTheOverride) {
   expect_refused("regions.count=-3",
                  "--set regions.count=-3: regions.count: found \"-3\", allowed: an integer from 1 to 1024");
   expect_refused("regions.colour=red", "--set regions.colour=red: regions.colour: unknown key, allowed: layout, count");
-  expect_refused("tme.sync=bounded", "--set tme.sync=bounded: tme: unknown key, allowed: scene, regions, time");
+  expect_refused("tme.sync=bounded",
+                 "--set tme.sync=bounded: tme: unknown key, allowed: scene, regions, exchange, time");
   expect_refused("time.sync.deep=1", "--set time.sync.deep=1: time.sync: found a map of 1, allowed: free_running");
   expect_refused("scene.gravity=9.81", "--set scene.gravity=9.81: gravity: found \"9.81\", allowed: a list of 3");
 }

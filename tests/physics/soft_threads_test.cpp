@@ -74,6 +74,19 @@ TEST(SoftThreads, AreFewerForFewBodies) {
   EXPECT_EQ(workers_for(100), 3);
 }
 
+/// A hundred stacks fall asleep, so that fewer threads have something to do. Then balls roll into them.
+TEST(SoftThreads, WhoHasNothingToDoAnyMoreLeavesNothingBehind) {
+  core::Scene scene = scene_of_all_shapes();
+  scene.materials[0].rolling_friction = scene.materials[0].linear_damping = scene.materials[0].angular_damping = 0;
+  for (int i = 0; i < 200; ++i) {
+    place_body(scene, kBox, {3.0 * (i / 2 % 10), 3.0 * (i / 20), 0.45 + 0.9 * (i % 2)});
+  }
+  for (int i = 0; i < 20; ++i) place_body(scene, kSphere, {3.0 * (i % 10), -40.0 - 3 * (i / 10), 0.4});
+  std::vector<core::BodyRecord> bodies = initial_records(scene);
+  for (std::size_t i = 200; i < bodies.size(); ++i) bodies[i].v_WB = {0, 10 + 0.1 * static_cast<double>(i % 10), 0};
+  expect_same_bits(scene, bodies, 16, 400);
+}
+
 /// Longer than a thread looks again before it sleeps, and shorter.
 TEST(SoftThreads, AllComeBackAfterAnyTime) {
   soft::Team team(3);

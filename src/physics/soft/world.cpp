@@ -126,10 +126,10 @@ class SoftWorld final : public World {
   /// Updates the bounds of objects that may have moved since the last call. Most of them stay in their boxes.
   void bound() {
     lists_.resize(static_cast<std::size_t>(team_.size()));
+    for (List& list : lists_) list.outside.clear();  // also of threads that have nothing to do in this step
     const std::span<btRigidBody* const> awake = islands_.awake();
     team_.side_by_side([&](const soft::Worker& worker) {
       std::vector<Bounded>& outside = lists_[static_cast<std::size_t>(worker.number)].outside;
-      outside.clear();
       const auto [first, last] = worker.share(awake.size());
       for (std::size_t i = first; i < last; ++i) {
         const Bounds bounds = bounds_ahead(*awake[i]);
