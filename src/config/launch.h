@@ -21,7 +21,7 @@ namespace aurasim::config {
 enum class Pace { kWall, kNone };
 /// Whether states are put back and computed again. kAuto: if the run is to have the same bits as one node.
 enum class Redo { kAuto, kOn, kOff };
-/// What nodes exchange so that bodies of two regions can touch (docs/design.md, "Coupled regions").
+/// The messages by which bodies of two regions can touch (docs/design.md, "Coupled regions").
 enum class Exchange { kAura, kCoupled };
 enum class OnDeath { kRecover, kStop };
 

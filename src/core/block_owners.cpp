@@ -9,7 +9,7 @@
 namespace aurasim::core {
 namespace {
 
-/// What a body of usual speed goes in a step, and gaps of contacts, m.
+/// A body of usual speed goes no farther in a step, gaps of contacts included, m.
 constexpr double kUsualWay_m = 0.4;
 
 /// The first edge of blocks from which on their centres are at `x` or beyond.

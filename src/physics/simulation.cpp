@@ -222,6 +222,12 @@ void Simulation::restore_pair(const core::ClusterState& cluster, std::span<const
   }
 }
 
+std::size_t Simulation::body_count() const {
+  if (coupling_ == nullptr) return table_.size();
+  return static_cast<std::size_t>(
+      std::ranges::count_if(table_.bodies(), [](const HostedBody& body) { return !is_guest(*body.rigid); }));
+}
+
 std::vector<core::BodyId> Simulation::body_ids() const {
   std::vector<core::BodyId> ids;
   for (const HostedBody& body : table_.bodies()) {

@@ -57,7 +57,7 @@ class Simulation {
   void copy_all(core::ChangedState& copy);
 
   bool contains(core::BodyId id) const;
-  std::size_t body_count() const { return body_ids().size(); }
+  std::size_t body_count() const;
   std::vector<core::BodyId> body_ids() const;
 
   void step();

@@ -39,7 +39,7 @@ void Simulation::copy_all(core::ClusterState& all) const {
   joints_.copy_all(table_, all);
 }
 
-/// Of two hosts of a contact, that of the body with the lower id copies it.
+/// The host of the body with the lower id copies a contact of two hosts.
 bool Simulation::is_for_us_to_copy(const btPersistentManifold& manifold) const {
   const int a = manifold.getBody0()->getUserIndex(), b = manifold.getBody1()->getUserIndex();
   const int first = is_static(a) || is_static(b) ? std::max(a, b) : std::min(a, b);

@@ -4,12 +4,23 @@
 #include <algorithm>
 #include <functional>
 #include <random>
+#include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "physics/joint_scenes.h"
 
 namespace aurasim::physics::testing {
+
+/// Name of a test with a solver, and whether fast bodies stop at obstacles.
+inline std::string solver_name(const ::testing::TestParamInfo<std::tuple<Solver, bool>>& info) {
+  const auto& [solver, is_continuous] = info.param;
+  return std::string(solver == Solver::kSoftStep ? "SoftStep" : "SequentialImpulse") +
+         (is_continuous ? "Continuous" : "");
+}
 
 /// Piles and creatures of all shapes and joints beside and upon each other, and a belt where the solver knows one.
 class GoesBack {

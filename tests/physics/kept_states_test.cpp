@@ -143,11 +143,7 @@ TEST_P(KeptStates, AreWhatTheBodiesAre) {
 INSTANTIATE_TEST_SUITE_P(Solvers, KeptStates,
                          ::testing::Combine(::testing::Values(Solver::kSequentialImpulse, Solver::kSoftStep),
                                             ::testing::Bool()),
-                         [](const auto& info) {
-                           const bool is_soft = std::get<0>(info.param) == Solver::kSoftStep;
-                           return std::string(is_soft ? "SoftStep" : "SequentialImpulse") +
-                                  (std::get<1>(info.param) ? "Continuous" : "");
-                         });
+                         solver_name);
 
 }  // namespace
 }  // namespace aurasim::physics::testing

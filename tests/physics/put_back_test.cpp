@@ -146,11 +146,7 @@ TEST_P(PutBack, ASleeperForgetsOnWhichPileItSleptLater) {
 INSTANTIATE_TEST_SUITE_P(Solvers, PutBack,
                          ::testing::Combine(::testing::Values(Solver::kSequentialImpulse, Solver::kSoftStep),
                                             ::testing::Bool()),
-                         [](const auto& info) {
-                           const bool is_soft = std::get<0>(info.param) == Solver::kSoftStep;
-                           return std::string(is_soft ? "SoftStep" : "SequentialImpulse") +
-                                  (std::get<1>(info.param) ? "Continuous" : "");
-                         });
+                         solver_name);
 
 }  // namespace
 }  // namespace aurasim::physics::testing

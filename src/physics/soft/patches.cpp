@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include "core/progress.h"
 #include "physics/prefetch.h"
@@ -84,6 +85,16 @@ void invert(const Real (&m)[6], Real (&to)[6]) {
 }
 
 }  // namespace
+
+SoftInertia inertia_of(const btRigidBody& body) {
+  SoftInertia inertia;
+  inertia.inv_mass = static_cast<Real>(body.getInvMass());
+  const btMatrix3x3& inverse = body.getInvInertiaTensorWorld();
+  for (int row = 0, k = 0; row < 3; ++row) {
+    for (int column = row; column < 3; ++column) inertia.inv_inertia[k++] = static_cast<Real>(inverse[row][column]);
+  }
+  return inertia;
+}
 
 SoftPatches::SoftPatches(double step_s, int substeps)
     : substep_s_(static_cast<Real>(step_s / substeps)),

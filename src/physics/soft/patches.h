@@ -11,6 +11,8 @@
 #include "physics/soft/layout.h"
 #include "physics/soft/threads.h"
 
+class btRigidBody;
+
 namespace aurasim::physics {
 
 class SoftExchange;
@@ -20,6 +22,8 @@ struct SoftInertia {
   soft::Real inv_mass = 0;         ///< 1/kg
   soft::Real inv_inertia[6] = {};  ///< xx, xy, xz, yy, yz, zz, 1/(kg m^2)
 };
+
+SoftInertia inertia_of(const btRigidBody& body);
 
 class SoftPatches {
  public:

@@ -9,99 +9,13 @@
 #include "physics/bullet_convert.h"
 #include "physics/moving_body.h"
 #include "physics/soft/contacts.h"
-#include "physics/soft/convert.h"
 #include "physics/soft/islands.h"
+#include "physics/soft/seam_parcels.h"
 
 namespace aurasim::physics {
 namespace {
 
 using soft::Mover;
-using soft::Real;
-
-/// Numbers of a mover that regions exchange: those of Mover without the unused ones.
-constexpr std::size_t kRow = 13;
-
-void write_row(const Mover& mover, ParcelWriter& parcel) {
-  parcel.put_some(mover.v, 3), parcel.put_some(mover.w, 3);
-  parcel.put_some(mover.dp, 3), parcel.put_some(mover.dq, 4);
-}
-
-void read_row(Mover& mover, ParcelReader& parcel) {
-  parcel.take_some(mover.v, 3), parcel.take_some(mover.w, 3);
-  parcel.take_some(mover.dp, 3), parcel.take_some(mover.dq, 4);
-}
-
-void write_patch(const SoftPatch& patch, ParcelWriter& parcel) {
-  parcel.put_some(patch.normal, 3), parcel.put_some(patch.belt, 3);
-  for (const Real value :
-       {patch.friction, patch.restitution, patch.spinning_m, patch.rolling_m, patch.rub_1, patch.rub_2, patch.twist}) {
-    parcel.put(value);
-  }
-  parcel.put(static_cast<std::uint8_t>(patch.count));
-  for (int i = 0; i < patch.count; ++i) {
-    const SoftPatch::Point& point = patch.points[static_cast<std::size_t>(i)];
-    parcel.put_some(point.r_a, 3), parcel.put_some(point.r_b, 3);
-    parcel.put(point.gap), parcel.put(point.impulse);
-  }
-}
-
-SoftPatch read_patch(ParcelReader& parcel) {
-  SoftPatch patch;
-  patch.is_foreign = true;
-  parcel.take_some(patch.normal, 3), parcel.take_some(patch.belt, 3);
-  for (Real* const value : {&patch.friction, &patch.restitution, &patch.spinning_m, &patch.rolling_m, &patch.rub_1,
-                            &patch.rub_2, &patch.twist}) {
-    *value = parcel.take<Real>();
-  }
-  const auto count = parcel.take<std::uint8_t>();
-  if (count == 0 || count > soft::kMostPoints) throw BadParcel("a contact of another region has no points");
-  patch.count = static_cast<std::int8_t>(count);
-  for (int i = 0; i < count; ++i) {
-    SoftPatch::Point& point = patch.points[static_cast<std::size_t>(i)];
-    parcel.take_some(point.r_a, 3), parcel.take_some(point.r_b, 3);
-    point.gap = parcel.take<Real>(), point.impulse = parcel.take<Real>();
-  }
-  return patch;
-}
-
-/// A body of a parcel: inverse mass and inertia, velocity.
-void write_body(const btRigidBody& body, bool moves, ParcelWriter& parcel) {
-  parcel.put(core::value_of(place_of(body).id));
-  parcel.put(static_cast<std::uint8_t>(moves));
-  const btMatrix3x3& inverse = body.getInvInertiaTensorWorld();
-  parcel.put(static_cast<Real>(body.getInvMass()));
-  for (int row = 0; row < 3; ++row) {
-    for (int column = row; column < 3; ++column) parcel.put(static_cast<Real>(inverse[row][column]));
-  }
-  Real v[3], w[3];
-  soft::from_bullet(body.getLinearVelocity(), v), soft::from_bullet(body.getAngularVelocity(), w);
-  parcel.put_some(v, 3), parcel.put_some(w, 3);
-}
-/// The impulses that the last step has left in the points of a touch.
-void write_impulses(const SoftTouch& touch, ParcelWriter& parcel) {
-  const int count = touch.manifold != nullptr ? touch.manifold->getNumContacts() : 0;
-  parcel.put(static_cast<std::uint8_t>(count));
-  for (int i = 0; i < count; ++i) {
-    const btManifoldPoint& point = touch.manifold->getContactPoint(i);
-    parcel.put(point.m_appliedImpulse), parcel.put(point.m_appliedImpulseLateral1);
-    parcel.put(point.m_appliedImpulseLateral2), parcel.put(point.m_prevRHS);
-  }
-}
-
-void read_impulses(ParcelReader& parcel, const SoftTouch& touch) {
-  const int count = touch.manifold != nullptr ? touch.manifold->getNumContacts() : 0;
-  if (parcel.take<std::uint8_t>() != count) throw BadParcel("another region has other points of a common contact");
-  for (int i = 0; i < count; ++i) {
-    btManifoldPoint& point = touch.manifold->getContactPoint(i);
-    point.m_appliedImpulse = parcel.take<btScalar>();
-    point.m_appliedImpulseLateral1 = parcel.take<btScalar>();
-    point.m_appliedImpulseLateral2 = parcel.take<btScalar>();
-    point.m_prevRHS = parcel.take<btScalar>();
-  }
-}
-
-constexpr std::size_t kBodyBytes = 8 + 1 + 13 * sizeof(Real);
-constexpr std::size_t kLeastPatchBytes = 8 + 8 + 8 + 1 + 13 * sizeof(Real) + 1;
 
 SoftPlace place(const btRigidBody& body, double block_m) {
   const BodyPlace& place = place_of(body);
@@ -266,7 +180,7 @@ void SoftShared::read(core::RegionId from) {
     Foreign& body = foreign_[id];
     body.host = from;
     body.moves = parcel.take<std::uint8_t>() != 0;
-    body.inertia.inv_mass = parcel.take<Real>();
+    body.inertia.inv_mass = parcel.take<soft::Real>();
     parcel.take_some(body.inertia.inv_inertia, 6);
     parcel.take_some(body.v, 3), parcel.take_some(body.w, 3);
   }
@@ -433,7 +347,7 @@ void SoftShared::exchange(SoftPhase phase, bool bounces, Mover* movers) {
   for (const auto& [host, with] : rows) {
     if (bounces && !with.bounces) continue;
     const std::span<const std::byte> bytes = coupling_.mail->fetch(host);
-    if (bytes.size() != with.theirs.size() * kRow * sizeof(Real)) {
+    if (bytes.size() != with.theirs.size() * kRowBytes) {
       throw BadParcel("another region sent other bodies than those in common contacts");
     }
     ParcelReader parcel(bytes);

@@ -12,6 +12,7 @@ set(soft_step_sources
   soft/kernels.cpp
   soft/layout.cpp
   soft/patches.cpp
+  soft/seam_parcels.cpp
   soft/shared.cpp
   soft/step.cpp
   soft/threads.cpp

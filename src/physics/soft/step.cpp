@@ -290,7 +290,7 @@ void SoftStep::Impl::prefetch_after(std::size_t i) const {
 
 void SoftStep::Impl::take_in(std::size_t i) {
   Mover& mover = movers[i] = {};
-  SoftInertia& inertia = inertias[i] = {};
+  inertias[i] = {};
   if (held[i] == nullptr) {
     bodies[i] = {};
     return;
@@ -300,11 +300,7 @@ void SoftStep::Impl::take_in(std::size_t i) {
   mover_at[static_cast<std::size_t>(body.getUserIndex())] = static_cast<std::int32_t>(i);
   soft::from_bullet(body.getLinearVelocity(), mover.v);
   soft::from_bullet(body.getAngularVelocity(), mover.w);
-  const btMatrix3x3& inverse = body.getInvInertiaTensorWorld();
-  inertia.inv_mass = static_cast<Real>(body.getInvMass());
-  for (int row = 0, k = 0; row < 3; ++row) {
-    for (int column = row; column < 3; ++column) inertia.inv_inertia[k++] = static_cast<Real>(inverse[row][column]);
-  }
+  inertias[i] = inertia_of(body);
   const btTransform& start = body.getWorldTransform();
   bodies[i] = {start.getOrigin(), start.getRotation(), body.getLinearVelocity(), body.getAngularVelocity()};
   const BodyPlace& place = place_of(body);
