@@ -1,6 +1,7 @@
 #include "physics/soft/patches.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 
@@ -27,7 +28,7 @@ constexpr double kHertzOfSubsteps = 0.25, kHertzOfSteps = 1.5;
 /// load, in weights of the lighter body, up to which both shares count, and from which on only the first does
 constexpr Real kLight = 2, kHeavy = 10;
 constexpr Real kDamping = 2;  ///< damping over critical damping: with 3 piles sway, with 1 cards wander
-/// Bodies that approach more slowly do not bounce.
+/// Points that approach more slowly do not bounce.
 constexpr Real kRestSpeed_m_s = Real(0.5);
 constexpr int kBounceSweeps = 8;  ///< several sweeps, because the points of a face share a bounce
 
@@ -128,6 +129,7 @@ void SoftPatches::put(std::size_t i, SoftPatch& patch, std::int32_t a, std::int3
 
 void SoftPatches::build(const Mover* movers, const SoftInertia* inertias, const Real (&gravity)[3], soft::Team& team) {
   blocks_.resize(layout_.place(team));
+  may_bounce_.assign(blocks_.size(), 0);
   bounces_.assign(static_cast<std::size_t>(team.employed()), 0);
   team.side_by_side([&](const soft::Worker& worker) {
     const auto [first_block, last_block] = worker.share(blocks_.size());
@@ -138,7 +140,9 @@ void SoftPatches::build(const Mover* movers, const SoftInertia* inertias, const 
     for (std::size_t i = first; i < last; ++i) {
       if (i + kPrefetchDistance / 2 < last) prefetch(patches_[i + kPrefetchDistance / 2], sizeof(SoftPatch));
       fill(i, movers, inertias, gravity);
-      if (patches_[i]->restitution > 0) bounces_[static_cast<std::size_t>(worker.number)] = 1;
+      if (!may_bounce(i)) continue;
+      std::atomic_ref(may_bounce_[layout_.block(i)]).store(1, std::memory_order_relaxed);
+      bounces_[static_cast<std::size_t>(worker.number)] = 1;
     }
   });
 }
@@ -220,7 +224,11 @@ void SoftPatches::solve(Mover* movers, const soft::Substep& substep, SoftExchang
 void SoftPatches::bounce(Mover* movers, SoftExchange* shared, const soft::Worker& worker) {
   if (std::ranges::count(bounces_, 1) == 0) return;
   const auto work = [&](int, std::size_t first, std::size_t count, std::size_t points) {
-    soft::kernel().bounce(&blocks_[first], count, static_cast<int>(points), movers, -kRestSpeed_m_s);
+    for (std::size_t k = first; k < first + count; ++k) {
+      if (may_bounce_[k] != 0) {
+        soft::kernel().bounce(&blocks_[k], 1, static_cast<int>(points), movers, kRestSpeed_m_s);
+      }
+    }
   };
   for (int sweep = 0; sweep < kBounceSweeps; ++sweep) {
     if (worker.is_first()) core::Progress::mark();
@@ -237,7 +245,7 @@ bool SoftPatches::may_bounce(std::size_t i) const {
   const soft::Block& block = blocks_[layout_.block(i)];
   const auto lane = layout_.lane(i);
   for (int k = 0; k < patches_[i]->count; ++k) {
-    if (block.points[k].approach[lane] < kRestSpeed_m_s) return true;
+    if (block.points[k].approach[lane] < -kRestSpeed_m_s) return true;
   }
   return false;
 }

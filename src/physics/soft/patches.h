@@ -83,8 +83,9 @@ class SoftPatches {
   SoftLayout layout_{SoftLayout::Waits::kInEachPhase};  ///< the kind is the number of points
   std::vector<soft::Block> blocks_;
   bool tallies_ = false;
-  std::vector<Sums> sums_;             ///< by block
-  std::vector<std::uint8_t> bounces_;  ///< by thread: some patch has restitution
+  std::vector<Sums> sums_;                ///< by block
+  std::vector<std::uint8_t> may_bounce_;  ///< by block: bounce() can change some patch of it
+  std::vector<std::uint8_t> bounces_;     ///< by thread: some patch of its share may bounce
 };
 
 }  // namespace aurasim::physics
