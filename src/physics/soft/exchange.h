@@ -10,8 +10,8 @@ class SoftExchange {
  public:
   virtual ~SoftExchange() = default;
 
-  /// Exchanges the movers for a phase. Bodies of other regions are then as their hosts have them. `bounces`: only
-  /// contacts that may bounce count.
+  /// Exchanges movers before a phase. Bodies of other regions in its contacts are then as their hosts have them. Called
+  /// before each phase of a sweep, in order. `bounces`: only contacts that may bounce count.
   virtual void exchange(SoftPhase phase, bool bounces, soft::Mover* movers) = 0;
 };
 

@@ -57,11 +57,13 @@ class SoftLayout {
   void sweep(const soft::Worker& worker, int times, Work&& work) const {
     for (std::size_t stage = 0; stage < stages_; ++stage) sweep(stage, worker, times, work);
   }
-  /// One sweep with kInEachPhase, but before each phase, one worker calls before(phase), while the others wait.
+  /// One sweep with kInEachPhase, but before each phase, also an empty one, one worker calls before(phase), while the
+  /// others wait.
   template <class Work, class Before>
   void sweep_after(const soft::Worker& worker, Work&& work, Before&& before) const {
     for (std::size_t stage = 0; stage < stages_; ++stage) {
-      if (worker.is_first() && stage < kStatics && !is_empty_[stage]) before(static_cast<SoftPhase>(stage));
+      if (worker.is_first() && stage < kStatics) before(static_cast<SoftPhase>(stage));
+      if (is_empty_[stage]) continue;
       worker.wait();
       sweep(stage, worker, 1, work);
     }

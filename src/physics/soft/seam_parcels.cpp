@@ -55,9 +55,10 @@ SoftPatch read_patch(ParcelReader& parcel) {
   return patch;
 }
 
-void write_body(const btRigidBody& body, bool moves, ParcelWriter& parcel) {
+void write_body(const btRigidBody& body, bool moves, std::uint8_t elsewhere, ParcelWriter& parcel) {
   parcel.put(core::value_of(place_of(body).id));
   parcel.put(static_cast<std::uint8_t>(moves));
+  parcel.put(elsewhere);
   const SoftInertia inertia = inertia_of(body);
   parcel.put(inertia.inv_mass);
   parcel.put_some(inertia.inv_inertia, 6);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "physics/parcel.h"
 #include "physics/soft/lanes.h"
@@ -14,7 +15,7 @@ namespace aurasim::physics {
 
 /// A mover has 13 numbers in a parcel.
 inline constexpr std::size_t kRowBytes = 13 * sizeof(soft::Real);
-inline constexpr std::size_t kBodyBytes = 8 + 1 + 13 * sizeof(soft::Real);
+inline constexpr std::size_t kBodyBytes = 8 + 1 + 1 + 13 * sizeof(soft::Real);
 inline constexpr std::size_t kLeastPatchBytes = 8 + 8 + 8 + 1 + 13 * sizeof(soft::Real) + 1;
 
 void write_row(const soft::Mover& mover, ParcelWriter& parcel);
@@ -24,8 +25,9 @@ void read_row(soft::Mover& mover, ParcelReader& parcel);
 void write_patch(const SoftPatch& patch, ParcelWriter& parcel);
 SoftPatch read_patch(ParcelReader& parcel);
 
-/// Writes the id of a body, whether it moves in the step, its inverse mass and inertia, and its velocities.
-void write_body(const btRigidBody& body, bool moves, ParcelWriter& parcel);
+/// Writes the id of a body, whether it moves in the step, the phases (as bits) in which it has contacts that the
+/// receiver does not solve, its inverse mass and inertia, and its velocities.
+void write_body(const btRigidBody& body, bool moves, std::uint8_t elsewhere, ParcelWriter& parcel);
 
 /// Writes the impulses that the step has left in the points of a touch.
 void write_impulses(const SoftTouch& touch, ParcelWriter& parcel);

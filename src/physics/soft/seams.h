@@ -12,10 +12,12 @@ namespace aurasim::physics {
 /// The phases of a sweep, in their order. The contacts of a phase form groups; no body is in two groups of a phase.
 /// Contacts with statics come last, after these.
 enum class SoftPhase : std::uint8_t {
-  kInside,   ///< both bodies have one block, which is the group
-  kEdges,    ///< the group: all contacts across one edge of two blocks
-  kCorners,  ///< the group: other contacts across edges around one corner of four blocks
-  kGiants,   ///< all others, in one group
+  kInside,  ///< both bodies have one block, which is the group
+  /// The group: contacts across edges around one corner of four blocks, but those of kEdges. Before kEdges, because who
+  /// solves contacts across an edge usually solves those around its corners, too, and so knows their result.
+  kCorners,
+  kEdges,   ///< the group: all contacts across one edge of two blocks between bodies that are nearest to it
+  kGiants,  ///< all others, in one group
 };
 inline constexpr std::size_t kSoftPhases = 4;
 

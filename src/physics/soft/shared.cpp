@@ -22,6 +22,8 @@ SoftPlace place(const btRigidBody& body, double block_m) {
   return soft_place(from_bullet(body.getWorldTransform().getOrigin()), place.block, place.radius_m, block_m);
 }
 
+std::uint8_t bit_of(SoftPhase phase) { return static_cast<std::uint8_t>(1U << static_cast<unsigned>(phase)); }
+
 }  // namespace
 
 std::vector<core::RegionId> SoftShared::audience(const btRigidBody& body, SoftPhase phase) const {
@@ -108,6 +110,7 @@ bool SoftShared::meet(std::span<btRigidBody* const> bodies, SoftContacts& contac
     if (by_index.size() <= index) by_index.resize(index + 1, nullptr);
     by_index[index] = body;
   }
+  touched_.assign(by_index.size(), {});
   struct Told {
     std::vector<const btRigidBody*> bodies;
     std::vector<std::pair<const SoftTouch*, SoftPhase>> touches;
@@ -121,6 +124,10 @@ bool SoftShared::meet(std::span<btRigidBody* const> bodies, SoftContacts& contac
     const SoftPhase phase = physics::phase_of(place(*ends[0], block_m_), place(*ends[1], block_m_));
     if (phase == SoftPhase::kInside) continue;
     for (int i = 0; i < 2; ++i) {
+      Touched& touched = touched_[static_cast<std::size_t>(ends[i]->getUserIndex())];
+      touched.phases |= bit_of(phase);
+      if (phase == SoftPhase::kEdges)
+        touched.across = is_guest(*ends[1 - i]) ? place_of(*ends[1 - i]).host : coupling_.self;
       if (is_guest(*ends[i])) told[place_of(*ends[i]).host].bodies.push_back(ends[1 - i]);
     }
     if (phase == SoftPhase::kEdges) continue;
@@ -143,7 +150,10 @@ bool SoftShared::meet(std::span<btRigidBody* const> bodies, SoftContacts& contac
     what.bodies.erase(twins.begin(), twins.end());
     parcel_.clear();
     parcel_.put(static_cast<std::uint32_t>(what.bodies.size()));
-    for (const btRigidBody* body : what.bodies) write_body(*body, islands.moves(slot_of(*body)), parcel_);
+    for (const btRigidBody* body : what.bodies) {
+      const std::uint8_t phases = elsewhere(touched_[static_cast<std::size_t>(body->getUserIndex())], peer);
+      write_body(*body, islands.moves(slot_of(*body)), phases, parcel_);
+    }
     std::size_t patches = 0;
     for (const auto& [touch, phase] : what.touches) patches += touch->patches;
     parcel_.put(static_cast<std::uint32_t>(patches));
@@ -180,6 +190,7 @@ void SoftShared::read(core::RegionId from) {
     Foreign& body = foreign_[id];
     body.host = from;
     body.moves = parcel.take<std::uint8_t>() != 0;
+    body.elsewhere = parcel.take<std::uint8_t>();
     body.inertia.inv_mass = parcel.take<soft::Real>();
     parcel.take_some(body.inertia.inv_inertia, 6);
     parcel.take_some(body.v, 3), parcel.take_some(body.w, 3);
@@ -200,14 +211,16 @@ void SoftShared::read(core::RegionId from) {
 
 void SoftShared::make_room(std::vector<btRigidBody*>& held) {
   for (auto& waiting : waiting_) waiting.clear();
-  for (auto& rows : rows_) rows.clear();
+  for (auto& common : common_) common.clear();
   known_.assign(held.size(), {});
   for (std::size_t i = 1; i < held.size(); ++i) {
     const BodyPlace& place = place_of(*held[i]);
-    known_[i] = {place.id, place.is_guest ? place.host : coupling_.self};
-    if (!place.is_guest) continue;
-    if (const auto body = foreign_.find(place.id); body != foreign_.end()) {
+    known_[i] = {place.id, place.is_guest ? place.host : coupling_.self, {}, 0, nullptr};
+    if (!place.is_guest) {
+      known_[i].touched = touched_[static_cast<std::size_t>(held[i]->getUserIndex())];
+    } else if (const auto body = foreign_.find(place.id); body != foreign_.end()) {
       body->second.mover = static_cast<std::int32_t>(i);
+      known_[i].elsewhere = body->second.elsewhere;
     }
   }
   for (const ForeignPatch& patch : foreign_patches_) {
@@ -216,7 +229,7 @@ void SoftShared::make_room(std::vector<btRigidBody*>& held) {
       if (body == foreign_.end() || !body->second.moves || body->second.mover > 0) continue;
       body->second.mover = static_cast<std::int32_t>(held.size());
       held.push_back(nullptr);
-      known_.push_back({id, body->second.host});
+      known_.push_back({id, body->second.host, {}, body->second.elsewhere, nullptr});
     }
   }
 }
@@ -233,21 +246,22 @@ void SoftShared::take_in(Mover* movers, std::vector<SoftInertia>& inertias) cons
 
 void SoftShared::add(const SoftTouch& touch, std::span<SoftPatch> found, std::int32_t a, std::int32_t b,
                      SoftPhase phase, std::size_t group) {
+  if (found.empty()) return;
   const bool both_move = a > 0 && b > 0;
   const std::int32_t any = std::max(a, b);
   if (!both_move && any > 0 && known(any).host != coupling_.self) return;  // its host alone solves it
-  const bool waits = both_move && phase >= SoftPhase::kCorners;
+  const bool waits = both_move && (phase == SoftPhase::kCorners || phase == SoftPhase::kGiants);
   const std::size_t first = placed_.size();
   for (SoftPatch& patch : found) {
     if (waits) {
-      waiting_[static_cast<std::size_t>(phase)].push_back({known(a).id, known(b).id, touch.parts, a, b, &patch});
+      waiting_[static_cast<std::size_t>(phase)].push_back({known(a).id, known(b).id, touch.parts, a, b, &patch, 0});
     } else {
       placed_.push_back({&patch, a, b, phase, group});
     }
   }
   if (!both_move || phase != SoftPhase::kEdges || known(a).host == known(b).host) return;
   const bool a_is_ours = known(a).host == coupling_.self;
-  Rows& with = rows_[static_cast<std::size_t>(phase)][known(a_is_ours ? b : a).host];
+  Common& with = common_[static_cast<std::size_t>(phase)][known(a_is_ours ? b : a).host];
   with.ours.push_back(a_is_ours ? a : b);
   with.theirs.push_back(a_is_ours ? b : a);
   for (std::size_t i = first; i < placed_.size(); ++i) with.patches.push_back(i);
@@ -259,13 +273,54 @@ void SoftShared::settle() {
     const auto a = foreign_.find(foreign.a), b = foreign_.find(foreign.b);
     if (a == foreign_.end() || b == foreign_.end() || !a->second.moves || !b->second.moves) continue;
     waiting_[static_cast<std::size_t>(foreign.phase)].push_back(
-        {foreign.a, foreign.b, foreign.parts, a->second.mover, b->second.mover, &foreign.patch});
+        {foreign.a, foreign.b, foreign.parts, a->second.mover, b->second.mover, &foreign.patch, 0});
   }
   settle(SoftPhase::kCorners);
   settle(SoftPhase::kGiants);
-  for (auto& of_phase : rows_) {
-    for (auto& [host, rows] : of_phase) {
-      for (std::vector<std::int32_t>* const movers : {&rows.ours, &rows.theirs}) {
+  order_rows(rows_, [](const Common&) { return true; });
+}
+
+std::uint8_t SoftShared::elsewhere(const Touched& touched, core::RegionId other) {
+  std::uint8_t phases = touched.phases & bit_of(SoftPhase::kCorners);
+  // All that a body touches across its edge is hosted by the owner of the block there.
+  if (touched.across != other) phases |= touched.phases & bit_of(SoftPhase::kEdges);
+  return phases;
+}
+
+SoftPhase SoftShared::sent_before(SoftPhase phase, const Known& body, core::RegionId other) const {
+  const bool is_ours = body.host == coupling_.self;
+  std::uint8_t phases = is_ours ? elsewhere(body.touched, other) : body.elsewhere;
+  // Both regions know that both solve the contacts around the corner.
+  const bool both_solve =
+      body.around_corner != nullptr && (!is_ours || std::ranges::count(body.around_corner->hosts, other) > 0);
+  if (both_solve) phases &= static_cast<std::uint8_t>(~bit_of(SoftPhase::kCorners));
+  while (phase > SoftPhase::kCorners) {
+    const auto last = static_cast<SoftPhase>(static_cast<std::uint8_t>(phase) - 1);
+    if ((phases & bit_of(last)) != 0) break;
+    phase = last;
+  }
+  return phase;
+}
+
+template <class Wanted>
+void SoftShared::order_rows(ByPhase<Rows>& rows, Wanted&& wanted) const {
+  for (auto& of_phase : rows) of_phase.clear();
+  for (std::size_t phase = 0; phase < kSoftPhases; ++phase) {
+    for (const auto& [host, common] : common_[phase]) {
+      if (!wanted(common)) continue;
+      for (const std::int32_t ours : common.ours) {
+        const SoftPhase before = sent_before(static_cast<SoftPhase>(phase), known(ours), host);
+        rows[static_cast<std::size_t>(before)][host].ours.push_back(ours);
+      }
+      for (const std::int32_t theirs : common.theirs) {
+        const SoftPhase before = sent_before(static_cast<SoftPhase>(phase), known(theirs), host);
+        rows[static_cast<std::size_t>(before)][host].theirs.push_back(theirs);
+      }
+    }
+  }
+  for (auto& of_phase : rows) {
+    for (auto& [host, with] : of_phase) {
+      for (std::vector<std::int32_t>* const movers : {&with.ours, &with.theirs}) {
         std::ranges::sort(*movers, {}, [this](std::int32_t mover) { return known(mover).id; });
         const auto twins = std::ranges::unique(*movers);
         movers->erase(twins.begin(), twins.end());
@@ -274,12 +329,8 @@ void SoftShared::settle() {
   }
 }
 
-/// Contacts that hang together are solved by all regions that host a body of them, and by no other.
-void SoftShared::settle(SoftPhase phase) {
-  std::vector<Waiting>& waiting = waiting_[static_cast<std::size_t>(phase)];
-  std::ranges::stable_sort(waiting, {}, [](const Waiting& w) {
-    return std::tuple(std::max(w.a, w.b), std::min(w.a, w.b), w.a, w.parts.part0, w.parts.part1);
-  });
+/// Finds which contacts hang together. Sets Waiting::chain.
+std::vector<SoftShared::Chain> SoftShared::find_chains(std::span<Waiting> waiting) const {
   std::vector<std::int32_t> parents(known_.size());
   std::iota(parents.begin(), parents.end(), 0);
   const auto root = [&](std::int32_t mover) {
@@ -290,62 +341,78 @@ void SoftShared::settle(SoftPhase phase) {
     const std::int32_t a = root(w.mover_a), b = root(w.mover_b);
     parents[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
   }
-  struct Chain {
-    std::vector<std::int32_t> movers;
-    std::vector<std::size_t> patches;
-    bool ours = false;
-  };
-  std::map<std::int32_t, Chain> chains;
-  for (const Waiting& w : waiting) {
-    Chain& chain = chains[root(w.mover_a)];
+  constexpr std::size_t kNone = ~std::size_t{0};
+  std::vector<std::size_t> chain_of(known_.size(), kNone);  // by root
+  std::vector<Chain> chains;
+  for (Waiting& w : waiting) {
+    std::size_t& number = chain_of[static_cast<std::size_t>(root(w.mover_a))];
+    if (number == kNone) number = chains.size(), chains.emplace_back();
+    w.chain = number;
+    Chain& chain = chains[number];
     for (const std::int32_t mover : {w.mover_a, w.mover_b}) {
       chain.movers.push_back(mover);
-      chain.ours = chain.ours || known(mover).host == coupling_.self;
-    }
-  }
-  for (const Waiting& w : waiting) {
-    Chain& chain = chains[root(w.mover_a)];
-    if (!chain.ours) continue;
-    chain.patches.push_back(placed_.size());
-    placed_.push_back({w.patch, w.mover_a, w.mover_b, phase, 0});  // one group: a chain may be anywhere
-  }
-  auto& rows = rows_[static_cast<std::size_t>(phase)];
-  for (const auto& [first, chain] : chains) {
-    if (!chain.ours) continue;
-    for (const std::int32_t theirs : chain.movers) {
-      const core::RegionId host = known(theirs).host;
-      if (host == coupling_.self) continue;
-      rows[host].theirs.push_back(theirs);
-    }
-    for (auto& [host, with] : rows) {
-      const auto is_theirs = [&, region = host](std::int32_t mover) { return known(mover).host == region; };
-      if (std::ranges::none_of(chain.movers, is_theirs)) continue;
-      with.patches.insert(with.patches.end(), chain.patches.begin(), chain.patches.end());
-      for (const std::int32_t ours : chain.movers) {
-        if (known(ours).host == coupling_.self) with.ours.push_back(ours);
+      const core::RegionId host = known(mover).host;
+      if (host == coupling_.self) {
+        chain.is_ours = true;
+      } else if (std::ranges::find(chain.hosts, host) == chain.hosts.end()) {
+        chain.hosts.push_back(host);
       }
     }
+  }
+  return chains;
+}
+
+/// Contacts that hang together are solved by all regions that host a body of them, and by no other.
+void SoftShared::settle(SoftPhase phase) {
+  std::vector<Waiting>& waiting = waiting_[static_cast<std::size_t>(phase)];
+  std::ranges::stable_sort(waiting, {}, [](const Waiting& w) {
+    return std::tuple(std::max(w.a, w.b), std::min(w.a, w.b), w.a, w.parts.part0, w.parts.part1);
+  });
+  std::vector<Chain> chains = find_chains(waiting);
+  for (const Waiting& w : waiting) {
+    if (!chains[w.chain].is_ours) continue;
+    chains[w.chain].patches.push_back(placed_.size());
+    placed_.push_back({w.patch, w.mover_a, w.mover_b, phase, 0});  // one group: a chain may be anywhere
+  }
+  auto& all_common = common_[static_cast<std::size_t>(phase)];
+  for (const Chain& chain : chains) {
+    if (!chain.is_ours) continue;
+    for (const core::RegionId host : chain.hosts) {
+      Common& common = all_common[host];
+      common.patches.insert(common.patches.end(), chain.patches.begin(), chain.patches.end());
+      for (const std::int32_t mover : chain.movers) {
+        if (known(mover).host == coupling_.self) common.ours.push_back(mover);
+        if (known(mover).host == host) common.theirs.push_back(mover);
+      }
+    }
+  }
+  if (phase == SoftPhase::kCorners) note_corners(std::move(chains));
+}
+
+void SoftShared::note_corners(std::vector<Chain>&& chains) {
+  around_corners_ = std::move(chains);
+  for (const Chain& chain : around_corners_) {
+    if (!chain.is_ours) continue;
+    for (const std::int32_t mover : chain.movers) known_[static_cast<std::size_t>(mover)].around_corner = &chain;
   }
 }
 
 void SoftShared::note_bounces(const SoftPatches& patches) {
-  for (auto& of_phase : rows_) {
-    for (auto& [host, rows] : of_phase) {
-      rows.bounces = std::ranges::any_of(rows.patches, [&](std::size_t i) { return patches.may_bounce(i); });
-    }
-  }
+  order_rows(bouncing_rows_, [&patches](const Common& common) {
+    return std::ranges::any_of(common.patches, [&](std::size_t i) { return patches.may_bounce(i); });
+  });
 }
 
 void SoftShared::exchange(SoftPhase phase, bool bounces, Mover* movers) {
-  const auto& rows = rows_[static_cast<std::size_t>(phase)];
+  const auto& rows = (bounces ? bouncing_rows_ : rows_)[static_cast<std::size_t>(phase)];
   for (const auto& [host, with] : rows) {
-    if (bounces && !with.bounces) continue;
+    if (with.ours.empty()) continue;
     parcel_.clear();
     for (const std::int32_t ours : with.ours) write_row(movers[ours], parcel_);
     coupling_.mail->post(host, parcel_.bytes());
   }
   for (const auto& [host, with] : rows) {
-    if (bounces && !with.bounces) continue;
+    if (with.theirs.empty()) continue;
     const std::span<const std::byte> bytes = coupling_.mail->fetch(host);
     if (bytes.size() != with.theirs.size() * kRowBytes) {
       throw BadParcel("another region sent other bodies than those in common contacts");

@@ -2,8 +2,9 @@
 //
 // Both hosts of a contact across an edge of blocks find it, because each knows the other's body as a guest. Contacts
 // around a corner of blocks, and those of giants, may form chains over more than two regions. So each region tells the
-// others which of them it has found. In each sweep, regions exchange the movers of the bodies in such contacts before
-// the phase in which these are solved, and all of them compute the same result.
+// others which of them it has found. In each sweep, regions exchange the movers of the bodies in such contacts, and all
+// of them compute the same result. A mover is sent as early in the sweep as it is final, so that most sweeps need one
+// message.
 #pragma once
 
 #include <array>
@@ -70,6 +71,7 @@ class SoftShared final : public SoftExchange {
   struct Foreign {
     core::RegionId host{};
     bool moves = false;
+    std::uint8_t elsewhere = 0;
     SoftInertia inertia;
     soft::Real v[3] = {}, w[3] = {};
     std::int32_t mover = 0;
@@ -80,22 +82,44 @@ class SoftShared final : public SoftExchange {
     SoftPhase phase{};
     SoftPatch patch;
   };
+  /// Contacts of a phase that hang together.
+  struct Chain {
+    std::vector<std::int32_t> movers;
+    std::vector<std::size_t> patches;   ///< by place in SoftPatches
+    std::vector<core::RegionId> hosts;  ///< of the movers, but this region
+    bool is_ours = false;               ///< some of the bodies are ours
+  };
   /// A patch that waits.
   struct Waiting {
     core::BodyId a{}, b{};
     Parts parts;
     std::int32_t mover_a = 0, mover_b = 0;
     SoftPatch* patch = nullptr;
+    std::size_t chain = 0;
   };
-  /// The movers that two regions exchange before a phase, ascending by id of the body.
+  /// The bodies in common contacts with another region.
+  struct Common {
+    std::vector<std::int32_t> ours, theirs;  ///< movers; some are there more than once
+    std::vector<std::size_t> patches;        ///< by place in SoftPatches
+  };
+  /// The movers that are sent to another region and received from it, ascending by id of the body.
   struct Rows {
     std::vector<std::int32_t> ours, theirs;
-    std::vector<std::size_t> patches;  ///< common contacts, by place in SoftPatches
-    bool bounces = false;              ///< some of them may bounce
+  };
+  /// By phase, and by the other region.
+  template <class Each>
+  using ByPhase = std::array<std::map<core::RegionId, Each>, kSoftPhases>;
+  /// The phases in which a body has contacts, as bits, and the host of those that it touches across its edge.
+  struct Touched {
+    std::uint8_t phases = 0;
+    core::RegionId across{};
   };
   struct Known {
     core::BodyId id{};
     core::RegionId host{};
+    Touched touched;                       ///< of own bodies
+    std::uint8_t elsewhere = 0;            ///< of bodies of other regions: what their host has told
+    const Chain* around_corner = nullptr;  ///< if we solve it: the chain of phase kCorners that the body is in
   };
 
   SoftPhase phase_of(const btRigidBody& a, const btRigidBody& b) const;
@@ -104,15 +128,29 @@ class SoftShared final : public SoftExchange {
   void read(core::RegionId from);
   const Known& known(std::int32_t mover) const { return known_[static_cast<std::size_t>(mover)]; }
   void settle(SoftPhase phase);
+  std::vector<Chain> find_chains(std::span<Waiting> waiting) const;
+  void note_corners(std::vector<Chain>&& chains);
+  /// What the host of a body tells another region: the phases, as bits, in which the other may not solve all contacts
+  /// of the body.
+  static std::uint8_t elsewhere(const Touched& touched, core::RegionId other);
+  /// The phase before which the mover of a body in a common contact of `phase` with another region is sent: the first
+  /// after which the other region knows it until then.
+  SoftPhase sent_before(SoftPhase phase, const Known& body, core::RegionId other) const;
+  /// Lists the movers of common contacts for which wanted(common) is true, by the phase before which they are sent.
+  template <class Wanted>
+  void order_rows(ByPhase<Rows>& rows, Wanted&& wanted) const;
 
   Coupling coupling_;
   double block_m_;
   std::map<core::BodyId, Foreign> foreign_;
   std::vector<ForeignPatch> foreign_patches_;
-  std::vector<Known> known_;  ///< by mover
+  std::vector<Touched> touched_;  ///< by user index
+  std::vector<Known> known_;      ///< by mover
   std::vector<Placed> placed_;
   std::array<std::vector<Waiting>, kSoftPhases> waiting_;
-  std::array<std::map<core::RegionId, Rows>, kSoftPhases> rows_;
+  std::vector<Chain> around_corners_;
+  ByPhase<Common> common_;
+  ByPhase<Rows> rows_, bouncing_rows_;
   ParcelWriter parcel_;
 };
 
