@@ -212,6 +212,18 @@ void VirtualCluster::crash(core::RegionId region, double lease_s) {
   stop(region);
 }
 
+void VirtualCluster::crash_in_step(core::RegionId region, std::size_t parcels) {
+  computed_.clear();
+  seams_.end_after(region, parcels);
+  try {
+    compute_all();
+  } catch (const core::SeamsBroken&) {
+    // The others stand in the middle of the state, as in a real run.
+  }
+  computed_.clear();
+  stop(region);
+}
+
 void VirtualCluster::compute(Member& member, double at_s) {
   const double frame_s = rules_.shortest_frame_s + (rules_.longest_frame_s - rules_.shortest_frame_s) * chance();
   network_.set_send_delay(frame_s);

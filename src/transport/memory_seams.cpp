@@ -43,10 +43,14 @@ void MemorySeams::run(std::span<const std::function<void()>> works) {
     });
   }
   for (std::thread& thread : threads) thread.join();
+  ending_.reset();
   if (first) std::rethrow_exception(first);
 }
 
 void MemorySeams::put(core::RegionId from, core::RegionId to, std::span<const std::byte> parcel) {
+  if (ending_ && ending_->first == from && ending_->second-- == 0) {
+    throw core::SeamsBroken("the process has died in the middle of a step");
+  }
   parcels_[{from, to}].emplace_back(parcel.begin(), parcel.end());
   ++count_;
   arrived_.notify_all();

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -24,6 +25,8 @@ class MemorySeams {
   core::SeamMail& of(core::RegionId region);
   /// Runs the works, one for each region, until all have ended. Throws what the first work threw that ended so.
   void run(std::span<const std::function<void()>> works);
+  /// In the next run() this region's work ends when it has posted so many parcels, as that of a process that dies.
+  void end_after(core::RegionId region, std::size_t parcels) { ending_ = {region, parcels}; }
   /// True if all parcels have been fetched.
   bool is_empty() const;
   /// Number of parcels so far.
@@ -39,6 +42,7 @@ class MemorySeams {
   std::condition_variable arrived_;
   std::map<std::pair<core::RegionId, core::RegionId>, std::deque<std::vector<std::byte>>> parcels_;
   std::size_t count_ = 0;
+  std::optional<std::pair<core::RegionId, std::size_t>> ending_;  ///< the parcels that this region posts yet
   bool closed_ = false;
   std::vector<std::unique_ptr<Box>> boxes_;
 };

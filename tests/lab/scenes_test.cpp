@@ -209,5 +209,17 @@ TEST_F(Scenes, CoupledRegionsHaveTheBitsOfOneNode) {
   }
 }
 
+/// Nodes die in the middle of a step, and the others stand in it (VirtualCluster::crash_in_step).
+TEST_F(Scenes, CoupledRegionsWhoseNodesDieHaveTheBitsOfOneNode) {
+  TrialRules deadly = rules(200);
+  deadly.overrides = {"exchange=coupled", "physics.solver=soft_step", "physics.block=2"};
+  deadly.deaths = 3;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const WorldOutcome outcome = outcome_of(random_world(seed), deadly);
+    EXPECT_EQ(outcome.error, "") << "seed " << seed;
+    EXPECT_EQ(outcome.first_difference, std::nullopt) << "seed " << seed;
+  }
+}
+
 }  // namespace
 }  // namespace aurasim::lab

@@ -10,6 +10,9 @@ namespace {
 
 constexpr core::Step kBetweenCheckpoints = 60;
 
+/// A coupled node that dies in the middle of a state has posted fewer parcels in it.
+constexpr std::uint64_t kMostParcels = 100;
+
 /// The part of a run between two deaths.
 class Life {
  public:
@@ -109,6 +112,8 @@ std::optional<Played> play_with_deaths(const Disasters& disasters, const config:
         first + static_cast<core::Step>(random() % static_cast<std::uint64_t>(disasters.steps - first + 1));
     Life life(*cluster, disasters, launch.lookahead(), world ? &*world : nullptr);
     if (!life.run(interference, victim, last, stop)) return std::nullopt;
+    if (cluster->is_coupled())
+      cluster->crash_in_step(core::RegionId{static_cast<std::uint32_t>(victim)}, random() % kMostParcels);
     std::optional<core::WorldCut> saved = life.saved(victim);
     if (!saved) continue;  // begin again from state 0
     take_over(life.played(), from, saved->step, whole);
