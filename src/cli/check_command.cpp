@@ -22,9 +22,21 @@ void add_check(CLI::App& program, command_line::Action& action) {
     action = [files] {
       const config::Launch launch = config::read_launch(files->file, files->overrides);
       overseer::check_tls_of(launch);
-      fmt::print("{}: scene '{}', {} bodies and {} injectors, {} regions, lookahead {}, listening distance {:.2f} m\n",
-                 files->file, launch.scene.name, launch.scene.bodies.size(), launch.scene.injectors.size(),
-                 launch.regions.size(), launch.lookahead(), setup::listening_distance_m(launch));
+      fmt::print("{}: scene '{}', {} bodies and {} injectors, {} regions, lookahead {}, {}\n", files->file,
+                 launch.scene.name, launch.scene.bodies.size(), launch.scene.injectors.size(), launch.regions.size(),
+                 launch.lookahead(),
+                 launch.is_coupled() ? std::string("all listen to each other")
+                                     : fmt::format("listening distance {:.2f} m", setup::listening_distance_m(launch)));
+      if (launch.regions.size() > 1 && launch.exchange != config::Exchange::kAura) {
+        fmt::print(
+            "exchange: {}\n",
+            launch.exchange == config::Exchange::kAuto
+                ? fmt::format("auto: coupled if round trips take at most {:.3g} ms when the nodes meet, else aura",
+                              1e3 * launch.exchange_limit_s())
+                : std::string("coupled"));
+      } else if (launch.regions.size() > 1 && !launch.why_exchange.empty()) {
+        fmt::print("exchange: auto means aura: {}\n", launch.why_exchange);
+      }
       std::fflush(stdout);
       host::LongWork work("looking for bodies that overlap",
                           [](const std::string& text) { fmt::print(stderr, "{}\n", text); });

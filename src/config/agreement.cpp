@@ -222,6 +222,7 @@ void add_settings(const Launch& launch, Digest& d) {
   d.bytes(static_cast<std::uint64_t>(launch.time.pace));
   d.bytes(launch.redoes());
   d.bytes(static_cast<std::uint64_t>(launch.exchange));
+  if (launch.exchange == Exchange::kAuto) d.add(launch.exchange_limit_s());
   d.bytes(static_cast<std::uint64_t>(launch.lookahead()));
   d.add(launch.tolerances.latency_s);
   d.add(launch.tolerances.frame_s);

@@ -187,6 +187,11 @@ double Launch::uncertainty() const {
   return aura.uncertainty.value_or(core::usual_uncertainty(time.sync, lookahead()));
 }
 
+double Launch::exchange_limit_s() const {
+  constexpr double kShareOfStep = 0.25;
+  return exchange_limit_given_s.value_or(kShareOfStep * step_s() / (2 * time.substeps + 1));
+}
+
 bool Launch::redoes() const {
   const bool on = time.redo == Redo::kOn || (time.redo == Redo::kAuto && time.sync == core::SyncMode::kDeterministic);
   return on && regions.size() > 1 && !is_coupled();

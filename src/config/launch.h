@@ -21,8 +21,9 @@ namespace aurasim::config {
 enum class Pace { kWall, kNone };
 /// Whether states are put back and computed again. kAuto: if the run is to have the same bits as one node.
 enum class Redo { kAuto, kOn, kOff };
-/// The messages by which bodies of two regions can touch (docs/design.md, "Coupled regions").
-enum class Exchange { kAura, kCoupled };
+/// The messages by which bodies of two regions can touch (docs/design.md, "Coupled regions"). kAuto: the nodes choose
+/// when they meet.
+enum class Exchange { kAura, kCoupled, kAuto };
 enum class OnDeath { kRecover, kStop };
 
 struct Time {
@@ -139,8 +140,10 @@ struct Launch {
   std::vector<SceneSource> injector_sources;  ///< as scene.injectors
   core::RegionMap regions = core::RegionMap::columns(1, 1);
   bool neighbour_distance_is_given = false;
-  double neighbour_distance_m = 0;  ///< regions at most this far apart are neighbours; at least the zone
-  Exchange exchange = Exchange::kAura;
+  double neighbour_distance_m = 0;      ///< regions at most this far apart are neighbours; at least the zone
+  Exchange exchange = Exchange::kAura;  ///< kAuto only where both of the others are possible
+  std::string why_exchange;  ///< reason why `auto` in the file can mean only `exchange`; empty: no such reason
+  std::optional<double> exchange_limit_given_s;  ///< exchange_limit; nothing: derived from the steps
   Time time;
   Tolerances tolerances;
   Aura aura;
@@ -161,6 +164,9 @@ struct Launch {
   double uncertainty() const;
   /// True when contacts between bodies of several regions are solved by all of these regions.
   bool is_coupled() const { return exchange == Exchange::kCoupled && regions.size() > 1; }
+  /// Longest round trip, s, at which `exchange: auto` couples regions. Unless it is given, the exchanges of a step (two
+  /// for each substep, and one) then take a quarter of the step's time.
+  double exchange_limit_s() const;
   /// True when every state is checked, and computed again where two bodies touched on two hosts.
   bool redoes() const;
   /// True when the run goes on after a death: it takes another node to keep the dead one's parts.

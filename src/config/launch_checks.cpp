@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -86,40 +88,78 @@ double zone_m(const Launch& launch) {
   return top_speed_aura(launch).foreign_reach(2) + 2 * largest_radius_m(launch.scene);
 }
 
-/// Checks what only coupled regions need.
-void check_coupled(const Field& regions, const Launch& launch) {
+namespace {
+
+struct ProblemOfCoupled {
+  std::string why;      ///< why regions cannot be coupled
+  std::string allowed;  ///< instead
+};
+
+std::vector<ProblemOfCoupled> problems_of_coupled(const Launch& launch) {
+  std::vector<ProblemOfCoupled> problems;
   if (launch.time.sync == core::SyncMode::kFreeRunning) {
-    regions.complain("exchange is coupled, allowed: aura where time.sync is free_running, because coupled nodes wait");
+    problems.push_back({"time.sync is free_running, where nodes do not wait for each other", "exchange: aura"});
   }
   if (!launch.physics.looks_once()) {
-    regions.complain(fmt::format("exchange is coupled, allowed: aura with the solver {}", launch.physics.solver));
+    problems.push_back({fmt::format("the solver is {}", launch.physics.solver), "exchange: aura, or soft_step"});
   }
   try {
     core::BlockOwners(launch.regions, launch.block_m(), 0);
   } catch (const core::BadRegionMap& problem) {
-    regions.complain(
-        fmt::format("{}, allowed with exchange: coupled: regions at least as wide as physics.block", problem.what()));
+    problems.push_back({problem.what(), "regions at least as wide as physics.block"});
+  }
+  return problems;
+}
+
+/// Why this launch cannot run with auras, and what is allowed; empty: it can.
+std::string problem_of_auras(const Launch& launch) {
+  if (launch.lookahead() > kLargestLookahead) {
+    return fmt::format("tolerances and step_hz give a lookahead of {} steps, allowed: at most {}", launch.lookahead(),
+                       kLargestLookahead);
+  }
+  const double reach = reach_m(launch);
+  if (launch.regions.narrowest_m() >= reach || launch.redoes()) return {};
+  return fmt::format(
+      "the narrowest region is {:.4g} m wide, allowed: at least {:.4g} m, the reach of an aura: speed {} m/s, "
+      "lookahead {}, contacts looked for at {} instants of a step, largest bounding radius {:.4g} m",
+      launch.regions.narrowest_m(), reach, launch.tolerances.speed_m_s, launch.lookahead(),
+      top_speed_aura(launch).rules().instants(), largest_radius_m(launch.scene));
+}
+
+/// Where `exchange: auto` can mean only one of the two, no node has to measure anything.
+void settle_auto(Launch& launch) {
+  if (launch.exchange != Exchange::kAuto) return;
+  if (launch.regions.size() == 1) {
+    launch.exchange = Exchange::kAura;
+    launch.why_exchange = "there is one region";
+  } else if (const std::string problem_of_coupled = why_not_coupled(launch); !problem_of_coupled.empty()) {
+    launch.exchange = Exchange::kAura;
+    launch.why_exchange = problem_of_coupled;
+  } else if (const std::string problem = problem_of_auras(launch); !problem.empty()) {
+    launch.exchange = Exchange::kCoupled;
+    launch.why_exchange = problem;
   }
 }
 
+}  // namespace
+
+std::string why_not_coupled(const Launch& launch) {
+  const std::vector<ProblemOfCoupled> problems = problems_of_coupled(launch);
+  return problems.empty() ? std::string() : problems.front().why;
+}
+
 void check_regions(const Field& regions, std::optional<double> neighbour_distance_m, Launch& launch) {
-  if (launch.lookahead() > kLargestLookahead) {
-    regions.complain(fmt::format("tolerances and step_hz give a lookahead of {} steps, allowed: at most {}",
-                                 launch.lookahead(), kLargestLookahead));
-    return;
-  }
+  settle_auto(launch);
   if (launch.time.redo == Redo::kOn && launch.time.sync == core::SyncMode::kFreeRunning) {
     regions.complain("time.redo is on, allowed: auto or off where time.sync is free_running: nodes do not agree there");
     return;
   }
-  if (launch.is_coupled()) check_coupled(regions, launch);
-  const double reach = reach_m(launch);
-  if (launch.regions.narrowest_m() < reach && !launch.redoes() && !launch.is_coupled()) {
-    regions.complain(fmt::format(
-        "the narrowest region is {:.4g} m wide, allowed: at least {:.4g} m, the reach of an aura: speed {} m/s, "
-        "lookahead {}, contacts looked for at {} instants of a step, largest bounding radius {:.4g} m",
-        launch.regions.narrowest_m(), reach, launch.tolerances.speed_m_s, launch.lookahead(),
-        top_speed_aura(launch).rules().instants(), largest_radius_m(launch.scene)));
+  if (launch.is_coupled()) {
+    for (const auto& [why, allowed] : problems_of_coupled(launch)) {
+      regions.complain(fmt::format("exchange is coupled, and {}; allowed: {}", why, allowed));
+    }
+  } else if (const std::string problem = problem_of_auras(launch); !problem.empty()) {
+    regions.complain(problem);
     return;
   }
   const double zone = zone_m(launch);
@@ -131,7 +171,6 @@ void check_regions(const Field& regions, std::optional<double> neighbour_distanc
         fmt::format("neighbour_distance is {:.4g} m, allowed: at least {:.4g} m, the zone in which bodies "
                     "project",
                     *neighbour_distance_m, zone));
-    return;
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "config/fields.h"
 #include "config/launch.h"
@@ -19,8 +20,11 @@ double reach_m(const Launch& launch);
 /// Largest distance from a region at which another region's node may need its auras. Metres.
 double zone_m(const Launch& launch);
 
-/// Checks that regions are wide enough for their auras, and that K and the number of neighbours are in bounds. Sets
-/// neighbour_distance_m.
+/// Why the regions of this launch cannot be coupled; empty: they can be.
+std::string why_not_coupled(const Launch& launch);
+
+/// Checks that regions are wide enough for their auras or blocks, and that K and the number of neighbours are in
+/// bounds. Sets neighbour_distance_m, and `exchange` where `auto` can mean only one.
 void check_regions(const Field& regions, std::optional<double> neighbour_distance_m, Launch& launch);
 
 /// Checks that the solver supports moving statics if there are any.

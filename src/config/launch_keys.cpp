@@ -294,11 +294,16 @@ const KeysOf<Launch>& launch_keys() {
       {
           required("scene", text("a scene file"), "what the world is made of; relative to this file"),
           required("regions", layout_value().with(regions_keys), "how the plane is divided among the nodes"),
-          optional("exchange", &Launch::exchange,
-                   choice<Exchange>({{"aura", Exchange::kAura}, {"coupled", Exchange::kCoupled}}),
-                   "how bodies of two regions touch. aura: one node gets both in time, which hides the latency between "
-                   "nodes; coupled: all their nodes solve the contact together, several messages a step, for nodes of "
-                   "one host or rack"),
+          optional(
+              "exchange", &Launch::exchange,
+              choice<Exchange>({{"aura", Exchange::kAura}, {"coupled", Exchange::kCoupled}, {"auto", Exchange::kAuto}}),
+              "how bodies of two regions touch. aura: one node gets both in time, which hides the latency between "
+              "nodes; coupled: all their nodes solve the contact together, several messages a step, for nodes of "
+              "one host or rack; auto: coupled where it is possible and the nodes measure short round trips when "
+              "they meet (exchange_limit), else aura"),
+          optional("exchange_limit", &Launch::exchange_limit_given_s, number(Range::from_to(1e-6, 10), "s"),
+                   "longest round trip between nodes at which exchange: auto means coupled")
+              .otherwise("a quarter of a step's time, divided by its exchanges: 2 time.substeps + 1"),
           optional("time", &Launch::time, time_keys, "steps, and who waits for whom"),
           optional("tolerances", &Launch::tolerances, tolerances_keys, "what the run promises to itself"),
           optional("aura", &Launch::aura, aura_keys, "how far ahead nodes warn each other"),

@@ -18,13 +18,21 @@ std::string box_text(const core::Rectangle& box, const core::Rectangle& bounds) 
                      number(box.x1, bounds.x1), number(box.y1, bounds.y1));
 }
 
+std::string override_of(Exchange exchange) {
+  return exchange == Exchange::kCoupled ? "exchange=coupled" : "exchange=aura";
+}
+
+/// Keeps what `exchange: auto` means in the run, whatever it would mean after the change.
 Launch reread(const Launch& launch, const std::string& change) {
   std::vector<std::string> overrides = launch.overrides;
+  if (!launch.why_exchange.empty() && launch.regions.size() > 1) overrides.push_back(override_of(launch.exchange));
   overrides.push_back(change);
   return read_launch(launch.file, overrides);
 }
 
 }  // namespace
+
+Launch with_exchange(const Launch& launch, Exchange exchange) { return reread(launch, override_of(exchange)); }
 
 Launch with_regions(const Launch& launch, const std::vector<core::Rectangle>& boxes) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();

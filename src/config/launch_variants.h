@@ -9,6 +9,9 @@
 
 namespace aurasim::config {
 
+/// Returns the launch of a run whose nodes have chosen this exchange. Throws BadConfig.
+Launch with_exchange(const Launch& launch, Exchange exchange);
+
 /// Returns the launch with these regions, one rectangle each; infinite sides allowed. Throws BadConfig.
 Launch with_regions(const Launch& launch, const std::vector<core::Rectangle>& boxes);
 

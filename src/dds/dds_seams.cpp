@@ -20,6 +20,10 @@ using namespace std::chrono_literals;
 /// After so long a wait for one parcel, the log names the region.
 constexpr auto kLong = 2s;
 
+double seconds_since(std::chrono::steady_clock::time_point begun) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+}
+
 struct Peer {
   Peer(Domain& domain, const SeamSettings& settings, core::RegionId peer, Wakeup& wakeup)
       : reader(domain,
@@ -34,6 +38,7 @@ struct Peer {
   Reader reader;
   Writer writer;
   std::uint32_t posted = 0, fetched = 0;  ///< in this step
+  double waited_s = 0;                    ///< in this step
   messages::SeamParcel last;
 };
 
@@ -52,6 +57,9 @@ struct DdsSeams::Impl {
   }
 
   bool take(core::RegionId from, Peer& peer);
+  void note_posted(std::chrono::steady_clock::time_point begun);
+  void note_fetched(Peer& peer, std::chrono::steady_clock::time_point begun);
+  void end_exchange();
 
   Participant& participant;
   SeamSettings settings;
@@ -60,7 +68,10 @@ struct DdsSeams::Impl {
   messages::Expected expected;
   core::Generation generation = 0;
   core::Step step = 0;
-  wire::SeamParcel sample;  // reused
+  ExchangeTimes times;
+  double exchange_s = 0;     ///< of the exchange that goes on
+  bool has_fetched = false;  ///< in the exchange that goes on
+  wire::SeamParcel sample;   // reused
 };
 
 /// Takes the next parcel of this step. Parcels of earlier steps are dropped.
@@ -93,6 +104,34 @@ bool DdsSeams::Impl::take(core::RegionId from, Peer& peer) {
   return false;
 }
 
+void DdsSeams::Impl::note_posted(std::chrono::steady_clock::time_point begun) {
+  if (has_fetched) end_exchange();
+  exchange_s += seconds_since(begun);
+}
+
+void DdsSeams::Impl::note_fetched(Peer& peer, std::chrono::steady_clock::time_point begun) {
+  const double took_s = seconds_since(begun);
+  has_fetched = true;
+  exchange_s += took_s;
+  peer.waited_s += took_s;
+}
+
+void DdsSeams::Impl::end_exchange() {
+  times.seconds.push_back(std::exchange(exchange_s, 0));
+  has_fetched = false;
+}
+
+const ExchangeTimes& DdsSeams::times() {
+  if (impl_->has_fetched) impl_->end_exchange();
+  impl_->times.waited_s = 0;
+  for (const auto& [region, peer] : impl_->peers) {
+    if (peer.waited_s <= impl_->times.waited_s) continue;
+    impl_->times.waited_for = region;
+    impl_->times.waited_s = peer.waited_s;
+  }
+  return impl_->times;
+}
+
 DdsSeams::DdsSeams(Participant& participant, const SeamSettings& settings)
     : impl_(std::make_unique<Impl>(participant, settings)) {}
 
@@ -110,19 +149,25 @@ std::vector<std::string> DdsSeams::unmatched(core::RegionId region) const {
 void DdsSeams::begin(core::Generation generation, core::Step step) {
   impl_->generation = generation;
   impl_->step = step;
+  impl_->times.seconds.clear();
+  impl_->exchange_s = 0;
+  impl_->has_fetched = false;
   for (auto& [region, peer] : impl_->peers) {
     peer.posted = peer.fetched = 0;
+    peer.waited_s = 0;
     peer.writer.forget_acknowledged();
   }
 }
 
 void DdsSeams::post(core::RegionId to, std::span<const std::byte> parcel) {
+  const auto begun = std::chrono::steady_clock::now();
   Peer& peer = impl_->peers.at(to);
   const messages::SeamHeader header{impl_->settings.region, to, impl_->generation, impl_->step, ++peer.posted};
   messages::encode(header, impl_->settings.map_version, parcel, impl_->sample);
   if (peer.writer.write(&impl_->sample) == WriteResult::kFailed) {
     throw core::SeamsBroken(fmt::format("region {} takes no parcels", core::value_of(to)));
   }
+  impl_->note_posted(begun);
 }
 
 std::span<const std::byte> DdsSeams::fetch(core::RegionId from) {
@@ -131,7 +176,10 @@ std::span<const std::byte> DdsSeams::fetch(core::RegionId from) {
   bool is_named = false;
   for (;;) {
     impl_->wakeup.clear();
-    if (impl_->take(from, peer)) return peer.last.octets;
+    if (impl_->take(from, peer)) {
+      impl_->note_fetched(peer, begun);
+      return peer.last.octets;
+    }
     if (impl_->settings.is_lost(from)) {
       throw core::SeamsBroken(fmt::format("region {} was lost in the middle of a step", core::value_of(from)));
     }

@@ -23,6 +23,14 @@ struct SeamSettings {
   std::function<bool(core::RegionId, const ProcessPrefix&)> is_node;
 };
 
+/// What the exchanges of one step took. In an exchange a region posts parcels to others, and then fetches theirs.
+struct ExchangeTimes {
+  std::vector<double>
+      seconds;  ///< of each exchange: posting, and waiting for parcels; without what is computed between
+  core::RegionId waited_for{};  ///< the region that was waited for longest
+  double waited_s = 0;          ///< for it, in all exchanges of the step
+};
+
 class DdsSeams final : public core::SeamMail {
  public:
   /// The participant must outlive it.
@@ -31,6 +39,9 @@ class DdsSeams final : public core::SeamMail {
 
   /// Names of the endpoints of a region that are not matched yet.
   std::vector<std::string> unmatched(core::RegionId region) const;
+
+  /// The exchanges since begin().
+  const ExchangeTimes& times();
 
   void begin(core::Generation generation, core::Step step) override;
   void post(core::RegionId to, std::span<const std::byte> parcel) override;

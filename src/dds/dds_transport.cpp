@@ -338,6 +338,8 @@ DdsTransport::DdsTransport(Participant& participant, const TransportSettings& se
 
 DdsTransport::~DdsTransport() = default;
 
+const ExchangeTimes* DdsTransport::exchange_times() { return impl_->seams ? &impl_->seams->times() : nullptr; }
+
 core::SeamMail* DdsTransport::seams() { return impl_->seams ? &*impl_->seams : nullptr; }
 
 void DdsTransport::wait_until_matched(std::chrono::nanoseconds time_out) {

@@ -18,6 +18,8 @@
 
 namespace aurasim::dds {
 
+struct ExchangeTimes;  // dds_seams.h
+
 struct TransportSettings {
   core::RegionId region{};
   std::vector<core::RegionId> neighbours;
@@ -95,6 +97,8 @@ class DdsTransport final : public transport::Transport {
 
   /// Parcels in the middle of a step; null unless TransportSettings::coupled.
   core::SeamMail* seams();
+  /// What the exchanges of the last step took; null unless TransportSettings::coupled.
+  const ExchangeTimes* exchange_times();
 
   const TransportCounters& counters() const;
   /// Neighbours whose samples were refused, with the number of refused samples.

@@ -13,7 +13,7 @@
 namespace aurasim::launch {
 namespace {
 
-constexpr std::size_t kLinesBesides = 6;  // header, sums, the viewer's line, the cursor
+constexpr std::size_t kLinesBesides = 7;  // header, sums, the exchange, the viewer's line, the cursor
 
 struct Column {
   std::string head;
@@ -82,6 +82,27 @@ std::string folded(const std::string& note, std::size_t terminal) {
   return lines;
 }
 
+/// How bodies of two regions touch in this run, and what one exchange takes; empty until that is known.
+std::string exchange_line(const std::map<core::RegionId, messages::SeenStatus>& statuses, std::size_t terminal) {
+  const messages::Status* slowest = nullptr;
+  double round_trip_ms = 0;
+  for (const auto& [region, seen] : statuses) {
+    round_trip_ms = std::max(round_trip_ms, seen.status.round_trip_ms);
+    if (seen.status.exchange == messages::ExchangeInUse::kNotChosen) continue;
+    if (slowest == nullptr || seen.status.exchange_times.p99_ms > slowest->exchange_times.p99_ms) {
+      slowest = &seen.status;
+    }
+  }
+  if (slowest == nullptr || statuses.size() < 2) return {};
+  std::string line = fmt::format("exchange: {}", messages::name_of(slowest->exchange));
+  if (round_trip_ms > 0) line += fmt::format(", chosen for round trips of {:.3g} ms", round_trip_ms);
+  if (slowest->exchange_times.max_ms > 0) {
+    line += fmt::format(", one takes {:.3g} ms (99% at most {:.3g} ms, region {})", slowest->exchange_times.p50_ms,
+                        slowest->exchange_times.p99_ms, core::value_of(slowest->region));
+  }
+  return folded(line, terminal);
+}
+
 /// Notices and faults from the nodes' statuses.
 std::string notes(const std::map<core::RegionId, messages::SeenStatus>& statuses, std::size_t terminal,
                   std::chrono::steady_clock::time_point now) {
@@ -129,7 +150,7 @@ std::string live_table(const std::map<core::RegionId, messages::SeenStatus>& sta
   std::string table;
   for (std::size_t i = 0; i <= shown; ++i) table += line(columns, i);
   if (shown < statuses.size()) table += fmt::format("{:>6} {} more\n", "...", statuses.size() - shown);
-  return table + line(columns, shown + 1) + notes(statuses, size.columns, now);
+  return table + line(columns, shown + 1) + exchange_line(statuses, size.columns) + notes(statuses, size.columns, now);
 }
 
 std::string listening_lines(const std::map<core::RegionId, messages::SeenStatus>& statuses, TerminalSize size) {

@@ -54,6 +54,9 @@ void encode_durations(const Status& status, wire::NodeStatus& out) {
   out.transport_p50_ms(status.transport.p50_ms);
   out.transport_p99_ms(status.transport.p99_ms);
   out.transport_max_ms(status.transport.max_ms);
+  out.exchange_p50_ms(status.exchange_times.p50_ms);
+  out.exchange_p99_ms(status.exchange_times.p99_ms);
+  out.exchange_max_ms(status.exchange_times.max_ms);
 }
 
 void decode_durations(const wire::NodeStatus& in, Status& status) {
@@ -61,6 +64,7 @@ void decode_durations(const wire::NodeStatus& in, Status& status) {
   status.physics = {in.physics_p50_ms(), in.physics_p99_ms(), in.physics_max_ms()};
   status.protocol = {in.protocol_p50_ms(), in.protocol_p99_ms(), in.protocol_max_ms()};
   status.transport = {in.transport_p50_ms(), in.transport_p99_ms(), in.transport_max_ms()};
+  status.exchange_times = {in.exchange_p50_ms(), in.exchange_p99_ms(), in.exchange_max_ms()};
 }
 
 void encode_counts(const Status& status, wire::NodeStatus& out) {
@@ -114,11 +118,13 @@ MaybeError check_values(const wire::NodeStatus& in, const Expected& expected) {
   const bool finite = finite_and_not_negative(
       {in.frame_p50_ms(), in.frame_p99_ms(), in.frame_max_ms(), in.physics_p50_ms(), in.physics_p99_ms(),
        in.physics_max_ms(), in.protocol_p50_ms(), in.protocol_p99_ms(), in.protocol_max_ms(), in.transport_p50_ms(),
-       in.transport_p99_ms(), in.transport_max_ms(), in.real_time_factor(), in.rate()});
+       in.transport_p99_ms(), in.transport_max_ms(), in.exchange_p50_ms(), in.exchange_p99_ms(), in.exchange_max_ms(),
+       in.round_trip_ms(), in.real_time_factor(), in.rate()});
   if (!finite) {
     return WireError::kNotFinite;
   }
-  if (in.state() > static_cast<std::uint8_t>(NodeState::kCutOff)) {
+  if (in.state() > static_cast<std::uint8_t>(NodeState::kCutOff) ||
+      in.exchange() > static_cast<std::uint8_t>(ExchangeInUse::kCoupled)) {
     return WireError::kEnum;
   }
   const bool in_range =
@@ -199,6 +205,8 @@ void encode(const Status& status, wire::NodeStatus& out) {
   out.footprint_x1(status.footprint.x1);
   out.footprint_y1(status.footprint.y1);
   out.lookahead(status.lookahead);
+  out.exchange(static_cast<std::uint8_t>(status.exchange));
+  out.round_trip_ms(status.round_trip_ms);
   out.text(cut_to_wire(status.text));
   fill(out.dead(), status.dead, [](RegionId region) { return value_of(region); });
 }
@@ -234,6 +242,8 @@ Decoded<Status> decode(const wire::NodeStatus& in, const Expected& expected) {
   }
   status.footprint = {in.footprint_x0(), in.footprint_y0(), in.footprint_x1(), in.footprint_y1()};
   status.lookahead = in.lookahead();
+  status.exchange = static_cast<ExchangeInUse>(in.exchange());
+  status.round_trip_ms = in.round_trip_ms();
   status.text = in.text().to_string();
   fill(status.dead, in.dead(), [](std::uint32_t region) { return static_cast<RegionId>(region); });
   return status;

@@ -28,6 +28,10 @@ enum class NodeState : std::uint8_t {
 };
 const char* name_of(NodeState state);
 
+/// How bodies of two regions touch in this run (config::Exchange).
+enum class ExchangeInUse : std::uint8_t { kNotChosen, kAura, kCoupled };
+const char* name_of(ExchangeInUse exchange);
+
 /// Durations over the last second, milliseconds.
 struct Durations {
   double p50_ms = 0;
@@ -89,6 +93,10 @@ struct Status {
   Durations physics;
   Durations protocol;
   Durations transport;
+  Durations exchange_times;  ///< one exchange with the other regions where they are coupled, else 0
+  ExchangeInUse exchange = ExchangeInUse::kNotChosen;
+  /// Slowest round trip that this node has measured to another one before the start, ms; 0: it has measured none.
+  double round_trip_ms = 0;
   double real_time_factor = 0;  ///< simulated seconds per second
   double rate = 1;              ///< requested simulated seconds per second
   std::uint64_t largest_cluster = 0;

@@ -37,8 +37,10 @@ command_line::ExitCode EndingPhase::end() {
   const dds::TransportCounters& sent = run_.transport().counters();
   const std::uint64_t bytes = sent.aura.sent_bytes + sent.migration.sent_bytes + sent.migration_ack.sent_bytes;
   const char* const outcome = fenced ? "fenced" : comes_to_its_end ? "finished" : "broken off";
+  const messages::Status& status = run_.status.content();
   run_.records.finish(*run_.node,
-                      {factor, outcome, dead, bytes, run_.checkpoints().sent_bytes(), run_.checkpoints().left_out()});
+                      {factor, outcome, dead, bytes, run_.checkpoints().sent_bytes(), run_.checkpoints().left_out(),
+                       messages::name_of(status.exchange), status.round_trip_ms, run_.records.exchanges()});
   run_.conclude_saves();
   if (fenced) return command_line::ExitCode::kFenced;
   if (!comes_to_its_end) return command_line::ExitCode::kBrokenOff;

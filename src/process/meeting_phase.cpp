@@ -1,6 +1,7 @@
 #include "process/meeting_phase.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -49,6 +50,52 @@ bool MeetingPhase::another_run_is_here() {
 bool MeetingPhase::receives_from_others() {
   return std::ranges::any_of(run_.control().statuses(),
                              [this](const auto& entry) { return entry.first != run_.options.region; });
+}
+
+bool MeetingPhase::agree_on_exchange() {
+  if (run_.launch.exchange != config::Exchange::kAuto) {
+    const bool is_lead = run_.options.region == core::RegionId{0} && run_.launch.regions.size() > 1;
+    if (is_lead && !run_.launch.why_exchange.empty()) spdlog::info("{}", words_of_only_choice(run_.launch));
+    return true;
+  }
+  const auto began = Clock::now();
+  Patience patience(run_.options.start_time_out, began);
+  host::LongWork waiting = waiting_for_nodes(run_.launch.regions.size());
+  dds::RoundTrips trips(run_.endpoints.participant(), run_.options.region,
+                        static_cast<std::uint32_t>(run_.launch.regions.size()), run_.launch.regions.version());
+  RoundTripBook book(run_.launch.regions.size());
+  while (run_.launch.exchange == config::Exchange::kAuto) {
+    if (host::stop_requested() || another_run_is_here()) return false;
+    measure(trips, book);
+    run_.take_exchange_of_others();
+    log_early_deaths();
+    note_meeting(patience, waiting);
+    if (patience.is_over(Clock::now())) {
+      run_.refuse(fmt::format("exchange: auto is not settled in {} s, and for {} s there was nothing new; {}",
+                              whole_seconds(Clock::now() - began), whole_seconds(patience.waited(Clock::now())),
+                              who_does_not_wait(run_.control().statuses(), run_.launch.regions.size())));
+      return false;
+    }
+    run_.publish();
+    run_.control().wait(1ms);
+  }
+  return true;
+}
+
+/// The lead asks, and chooses when it knows enough. All others answer.
+void MeetingPhase::measure(dds::RoundTrips& trips, RoundTripBook& book) {
+  if (run_.options.region != core::RegionId{0}) return trips.answer();
+  const auto taken = trips.take_answers();
+  const auto now = Clock::now();
+  for (const dds::RoundTrips::Answer& answer : taken) book.note_answer(answer.region, answer.number, now);
+  for (const RoundTripBook::Question& question : book.take_due(now)) trips.ask(question.region, question.number);
+  if (!book.is_complete(now)) return;
+  const RoundTrip slowest = book.slowest();
+  const double limit_s = run_.launch.exchange_limit_s();
+  const config::Exchange chosen = choose_exchange(slowest, limit_s);
+  spdlog::info("{}", words_of_choice(chosen, slowest, limit_s));
+  if (std::isfinite(slowest.median_s)) run_.status.content().round_trip_ms = 1e3 * slowest.median_s;
+  run_.use_exchange(chosen);
 }
 
 bool MeetingPhase::meet_neighbours() {
@@ -107,7 +154,8 @@ bool MeetingPhase::wait_for_start() {
 /// Notes how far all have met.
 void MeetingPhase::note_meeting(Patience& patience, host::LongWork& waiting) {
   const SeenNodes& nodes = run_.control().statuses();
-  patience.look(progress_of_meeting(nodes, run_.transport().found()), Clock::now());
+  const std::uint64_t found = run_.endpoints.has_transport() ? run_.transport().found() : 0;
+  patience.look(progress_of_meeting(nodes, found), Clock::now());
   if (run_.options.region != core::RegionId{0}) return;
   waiting.reached(share_of_nodes(nodes, run_.options.region, run_.launch.regions.size()));
 }

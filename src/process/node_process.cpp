@@ -49,6 +49,7 @@ command_line::ExitCode NodeProcess::meet_and_run() {
   run_.enter(NodeEvent::kFree);
   run_.publish_map(run_.generation, run_.first_step());
   run_.publish();
+  if (!meeting_.agree_on_exchange()) return not_begun();
   run_.endpoints.open(run_.transport_settings());
   if (!meeting_.meet_neighbours() || !meeting_.wait_for_start()) return not_begun();
   for (const std::string& text : wrong_clocks(run_.control().statuses(), run_.endpoints.stays_on_this_host())) {
@@ -208,6 +209,7 @@ void NodeProcess::compute_step() {
   run_.command_queue.note(report.step, now);
   run_.notices.note_computed();
   run_.status.note_step(report, frame_ms, now);
+  run_.note_exchanges(now);
   run_.publish_running();
   changing_.take_reached_changes();
 }

@@ -7,8 +7,11 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "config/launch_variants.h"
 #include "cut/saved_world.h"
+#include "dds/dds_seams.h"
 #include "dds/random_id.h"
+#include "process/exchange_choice.h"
 #include "process/long_step.h"
 #include "setup/launch_setup.h"
 
@@ -39,6 +42,7 @@ messages::Status identity_of_node(const config::Launch& launch, const NodeOption
   status.agreement = launch.agreement();
   status.footprint = launch.regions.region(options.region);
   status.lookahead = launch.lookahead();
+  status.exchange = in_use(launch.exchange);
   return status;
 }
 
@@ -99,6 +103,30 @@ void NodeRuntime::publish_map(core::Generation of, core::Step from_step) {
   map.generation = of;
   map.from_step = from_step;
   control().publish_map(map);
+}
+
+void NodeRuntime::use_exchange(config::Exchange exchange) {
+  launch = config::with_exchange(launch, exchange);
+  status.use_exchange(launch);
+}
+
+void NodeRuntime::take_exchange_of_others() {
+  if (launch.exchange != config::Exchange::kAuto) return;
+  const messages::ExchangeInUse chosen = chosen_by_others(control().statuses(), status.content().agreement);
+  if (chosen == messages::ExchangeInUse::kNotChosen) return;
+  use_exchange(chosen == messages::ExchangeInUse::kCoupled ? config::Exchange::kCoupled : config::Exchange::kAura);
+}
+
+void NodeRuntime::note_exchanges(Clock::time_point now) {
+  const dds::ExchangeTimes* const times = transport().exchange_times();
+  if (times == nullptr) return;
+  records.note_exchanges(times->seconds);
+  status.note_exchanges(times->seconds);
+  const auto slow =
+      exchange_watch.note(times->seconds, times->waited_for, times->waited_s, launch.exchange_limit_s(), now);
+  if (!slow) return;
+  spdlog::warn("region {}: {}", core::value_of(options.region), *slow);
+  notices.note_news(*slow);
 }
 
 void NodeRuntime::start_when_all_wait() {

@@ -15,6 +15,7 @@
 #include "config/launch.h"
 #include "node/node.h"
 #include "process/command_queue.h"
+#include "process/exchange_watch.h"
 #include "process/fence.h"
 #include "process/leaving.h"
 #include "process/meeting.h"
@@ -62,6 +63,14 @@ struct NodeRuntime {
   dds::TransportSettings transport_settings();
   /// Publishes the map and scene of a generation. The agreement stays that of the run's beginning.
   void publish_map(core::Generation of, core::Step from_step);
+
+  // The exchange, where the launch file says `auto`
+  /// From now on this is the run's exchange.
+  void use_exchange(config::Exchange exchange);
+  /// Uses the exchange that live nodes of the run have chosen, if it is not known here and any has.
+  void take_exchange_of_others();
+  /// Counts the exchanges of the last state where regions are coupled.
+  void note_exchanges(Clock::time_point now);
 
   // Connecting for a generation
   /// Region 0 sends the awaited start once every region waits for it.
@@ -128,6 +137,7 @@ struct NodeRuntime {
   Records records;
   Notices notices;
   NodeStatus status;
+  ExchangeWatch exchange_watch;
   SetpointIntake setpoints;
   RunSchedule schedule;
   CommandQueue command_queue;

@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "host/stop_signal.h"
+#include "process/exchange_choice.h"
 #include "process/keepers.h"
 #include "process/node_runtime.h"
 #include "setup/launch_setup.h"
@@ -89,7 +90,8 @@ void NodeRuntime::begin_changed_map() {
 void NodeRuntime::record(std::span<const node::StepReport> reports) {
   for (const node::StepReport& report : reports) {
     notices.note_removals(report.removals);
-    notices.note_cluster(report.largest_cluster, report.bodies, report.step);
+    notices.note_cluster(report.largest_cluster, report.bodies, report.step,
+                         remedy_for_heaps(launch, status.content().round_trip_ms, endpoints.stays_on_this_host()));
     setpoints.note_unbearable(report.unbearable);
     if (!report.put_back_from) saving.note_recorded(report.step);
     records.write(report);

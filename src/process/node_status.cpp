@@ -4,6 +4,7 @@
 #include <span>
 #include <utility>
 
+#include "process/exchange_choice.h"
 #include "records/durations.h"
 
 namespace aurasim::process {
@@ -28,16 +29,27 @@ void FrameWindow::note(double frame_ms, const node::Durations& durations, Clock:
   transport_.push_back(1e3 * durations.transport_s);
 }
 
+void FrameWindow::note_exchanges(std::span<const double> seconds) {
+  for (const double one : seconds) exchange_.push_back(1e3 * one);
+}
+
 void FrameWindow::summarize(messages::Status& status) {
   status.frame = summary_of(frame_);
   status.physics = summary_of(physics_);
   status.protocol = summary_of(protocol_);
   status.transport = summary_of(transport_);
+  status.exchange_times = summary_of(exchange_);
 }
 
 void NodeStatus::use_regions(const config::Launch& launch) {
   status_.map_version = launch.regions.version();
   status_.footprint = launch.regions.region(status_.region);
+}
+
+void NodeStatus::use_exchange(const config::Launch& launch) {
+  status_.exchange = in_use(launch.exchange);
+  status_.lookahead = launch.lookahead();
+  make_due();  // the others wait for it
 }
 
 void NodeStatus::note_step(const node::StepReport& report, double frame_ms, Clock::time_point now) {

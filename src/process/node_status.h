@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <span>
 #include <vector>
 
 #include "config/launch.h"
@@ -20,12 +21,13 @@ class FrameWindow {
   explicit FrameWindow(Clock::time_point now) : begin_(now) {}
 
   void note(double frame_ms, const node::Durations& durations, Clock::time_point now);
+  void note_exchanges(std::span<const double> seconds);
   /// Writes the percentiles of the window into `status`.
   void summarize(messages::Status& status);
 
  private:
   Clock::time_point begin_;
-  std::vector<double> frame_, physics_, protocol_, transport_;
+  std::vector<double> frame_, physics_, protocol_, transport_, exchange_;
 };
 
 class NodeStatus {
@@ -40,8 +42,12 @@ class NodeStatus {
 
   /// The run goes on with the regions of this launch.
   void use_regions(const config::Launch& launch);
+  /// The run's exchange has been chosen.
+  void use_exchange(const config::Launch& launch);
   /// Counts a state that was computed in `frame_ms`.
   void note_step(const node::StepReport& report, double frame_ms, Clock::time_point now);
+  /// Counts the exchanges of that state where regions are coupled.
+  void note_exchanges(std::span<const double> seconds) { window_.note_exchanges(seconds); }
   /// Counts bodies that have changed their hosts without a step.
   void note_moved(const node::StepReport& moved);
   /// Takes over what `node` counts by itself, and the percentiles of the last second.

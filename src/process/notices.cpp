@@ -49,14 +49,14 @@ void Notices::note_removals(std::span<const physics::Removal> removals) {
   }
 }
 
-void Notices::note_cluster(std::size_t largest_cluster, std::size_t hosted, core::Step step) {
+void Notices::note_cluster(std::size_t largest_cluster, std::size_t hosted, core::Step step,
+                           const std::string& remedy) {
   if (says_large_cluster_ || largest_cluster < kLargeCluster || 2 * largest_cluster < hosted) return;
   says_large_cluster_ = true;
   news_ = fmt::format(
       "{} of the {} bodies here are one cluster in state {}: they touch each other or may do so soon, so one node has "
-      "to host them. More nodes do not make this run faster. Borders that do not run through the heap, a smaller "
-      "time.lookahead or a smaller aura.uncertainty may help",
-      largest_cluster, hosted, step);
+      "to host them. More nodes do not make this run faster. {}",
+      largest_cluster, hosted, step, remedy);
   spdlog::warn("region {}: {}", core::value_of(region_), news_);
 }
 

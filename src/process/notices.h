@@ -39,8 +39,8 @@ class Notices {
   /// To be called when a world begins: its protocol counts refusals anew.
   void begin_refusals() { refusals_noted_ = 0; }
   /// Logs once that most of this node's bodies are in one cluster, which cannot be divided among nodes. `hosted`: all
-  /// bodies of this node in state `step`.
-  void note_cluster(std::size_t largest_cluster, std::size_t hosted, core::Step step);
+  /// bodies of this node in state `step`. `remedy`: what helps in this run (remedy_for_heaps).
+  void note_cluster(std::size_t largest_cluster, std::size_t hosted, core::Step step, const std::string& remedy);
   /// Logs refused messages of neighbours that are new. `refusals`: all of this world. The content of a refused message
   /// is lost for good, so the protocol has marked its sender dead.
   void note_refusals(const std::vector<core::Refusal>& refusals);

@@ -8,6 +8,7 @@ namespace aurasim::process {
 void Records::begin() {
   recorder_.reset();  // the old recorder must not write its last rows into the new one's files
   if (folder_) recorder_.emplace(*folder_, region_);
+  exchanges_ = {};
 }
 
 std::string Records::go_on_after(std::optional<core::Step> step) {
@@ -23,6 +24,10 @@ std::string Records::go_on_after(std::optional<core::Step> step) {
 
 void Records::note_frame(core::Step step, double frame_ms) {
   frame_times_[step] = {frame_ms, std::exchange(wait_ms_, 0)};
+}
+
+void Records::note_exchanges(std::span<const double> seconds) {
+  for (const double one : seconds) exchanges_.note(one);
 }
 
 void Records::write(const node::StepReport& report) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -31,6 +32,10 @@ class Records {
   /// Counts time spent waiting for neighbours to the next state.
   void note_wait(double wait_ms) { wait_ms_ += wait_ms; }
   void note_frame(core::Step step, double frame_ms);
+  /// Counts the exchanges of a state where regions are coupled.
+  void note_exchanges(std::span<const double> seconds);
+  /// All exchanges since begin().
+  const records::TimeHistogram& exchanges() const { return exchanges_; }
   /// Forgets the frame times of states that will never be recorded.
   void forget_frames() { frame_times_.clear(); }
 
@@ -49,7 +54,8 @@ class Records {
   core::RegionId region_;
   std::optional<records::Recorder> recorder_;
   std::map<core::Step, records::FrameTimes> frame_times_;  ///< of states that are not recorded yet
-  double wait_ms_ = 0;                                     ///< since the last state
+  records::TimeHistogram exchanges_;
+  double wait_ms_ = 0;  ///< since the last state
 };
 
 }  // namespace aurasim::process

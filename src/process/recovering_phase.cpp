@@ -181,7 +181,8 @@ void RecoveringPhase::go_back() {
   run_.restoration.finish();
 }
 
-/// Takes the scene and the regions that the run goes on with from the published map.
+/// Takes the scene and the regions that the run goes on with from the published map, and the exchange from the other
+/// nodes' statuses.
 void RecoveringPhase::take_map_of(const messages::RunCommand& restore) {
   const messages::WorldMap* map = nullptr;
   const auto deadline = Clock::now() + kPatienceWithParts;
@@ -191,6 +192,10 @@ void RecoveringPhase::take_map_of(const messages::RunCommand& restore) {
       if (known.generation == restore.generation && agrees) map = &known;
     }
     if (map == nullptr) wait_in_recovery(deadline, "the map");
+  }
+  for (run_.take_exchange_of_others(); run_.launch.exchange == config::Exchange::kAuto;
+       run_.take_exchange_of_others()) {
+    wait_in_recovery(deadline, "the exchange that the others have chosen");
   }
   if (map->scene != run_.launch.scene.name) run_.launch = config::with_scene(run_.launch, map->scene);
   if (map->map_version != run_.launch.regions.version()) run_.launch = config::with_regions(run_.launch, map->regions);

@@ -227,6 +227,14 @@ void Recorder::write_summary(node::Node& node, const Ending& ending) const {
       {"checkpoint_bytes", ending.checkpoint_bytes},
       {"checkpoints_left_out", ending.checkpoints_left_out},
   };
+  summary["exchange"] = ending.exchange;
+  if (ending.round_trip_ms > 0) summary["round_trip_ms"] = ending.round_trip_ms;
+  if (const TimeHistogram& times = ending.exchanges; times.count() > 0) {
+    summary["exchanges"] = {{"count", times.count()},
+                            {"p50_ms", 1e3 * times.percentile_s(0.5)},
+                            {"p99_ms", 1e3 * times.percentile_s(0.99)},
+                            {"max_ms", 1e3 * times.longest_s()}};
+  }
   summary["computing_s"] = node.time_spent().all_s();
   summary["in_redos_s"] = node.time_spent().in_redos_s();
   constexpr std::size_t kMostPairs = 16;

@@ -11,6 +11,7 @@
 
 #include "node/node.h"
 #include "records/row_file.h"
+#include "records/time_histogram.h"
 
 namespace aurasim::records {
 
@@ -28,6 +29,9 @@ struct Ending {
   std::uint64_t sent_bytes = 0;  ///< auras, hand-offs and acknowledgements sent to neighbours, without RTPS headers
   std::uint64_t checkpoint_bytes = 0;      ///< parts of the world sent to their keeper
   std::uint64_t checkpoints_left_out = 0;  ///< parts for which the way to the keeper was too slow
+  std::string exchange = {};               ///< how bodies of two regions touch: aura or coupled
+  double round_trip_ms = 0;                ///< the slowest that was measured before the start; 0: none was
+  TimeHistogram exchanges = {};            ///< of coupled regions
 };
 
 /// Where the records end before the run does.

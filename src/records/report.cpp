@@ -262,6 +262,7 @@ class Merge {
         {"steps", steps},
         {"step_s", facts_.step_s},
         {"real_time_factor", accounts_.real_time_factor},
+        {"exchange", nodes_.empty() ? std::string() : nodes_.front().value("exchange", std::string())},
         {"bodies_spawned", first_host_.size()},
         {"bodies_removed", removed_.size()},
         {"bodies_alive", alive_.size()},

@@ -48,6 +48,8 @@ constexpr std::array<Topic, kTopicCount> kTopics = {{
      "a region's part of the world in one state, as in a file: to be kept, or to go back to"},
     {TopicId::kSeam, "seam", "aurasim::wire::SeamParcel", Division::kByPair, true, kNodes, kNodes,
      "where regions are coupled, several in each step: bodies near the border, and movers of common contacts"},
+    {TopicId::kProbe, "probe", "aurasim::wire::SeamParcel", Division::kByPair, false, kNodes, kNodes,
+     "before the start of a run with `exchange: auto`: questions of region 0 and the answers, to measure round trips"},
 }};
 
 constexpr bool is_in_order() {

@@ -32,9 +32,10 @@ enum class TopicId : std::uint8_t {
   kOrders,
   kControl,
   kCheckpoint,
-  kSeam
+  kSeam,
+  kProbe
 };
-inline constexpr std::size_t kTopicCount = 18;
+inline constexpr std::size_t kTopicCount = 19;
 
 /// How the messages of a topic are divided into partitions.
 enum class Division : std::uint8_t {

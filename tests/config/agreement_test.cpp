@@ -44,6 +44,11 @@ TEST_F(Agreement, IsTheSameForTheSameContentElsewhere) {
   EXPECT_EQ(read_launch(file).agreement(), of());
 }
 
+TEST_F(Agreement, DependsOnTheLimitOfTheExchangeOnlyWhereItDecides) {
+  EXPECT_EQ(of({"exchange_limit=0.001"}), of());
+  EXPECT_NE(of({"exchange=auto", "exchange_limit=0.001"}), of({"exchange=auto"}));
+}
+
 TEST_F(Agreement, DoesNotDependOnHowTheRunIsConnectedAndWatched) {
   workspace_.write("qos.xml", "<dds/>");
   workspace_.write("keys/identity_ca.pem", "");
@@ -56,6 +61,8 @@ TEST_F(Agreement, DoesNotDependOnHowTheRunIsConnectedAndWatched) {
 TEST_F(Agreement, DiffersWithEverythingThatIsComputed) {
   std::set<std::uint64_t> seen = {of()};
   const std::vector<std::string> changes = {
+      "exchange=coupled",
+      "exchange=auto",
       "regions.count=3",
       "regions={layout: columns, count: 3, width: 41}",
       "regions.neighbour_distance=30",

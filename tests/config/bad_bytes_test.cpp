@@ -16,8 +16,9 @@ class BadBytes : public testing::Test {
 };
 
 TEST_F(BadBytes, AnEmptyFileHasNoKeys) {
-  expect_errors(errors(""),
-                {"launch.yaml:1:1: the file: found nothing, allowed: a map of scene, regions, exchange, time"});
+  expect_errors(
+      errors(""),
+      {"launch.yaml:1:1: the file: found nothing, allowed: a map of scene, regions, exchange, exchange_limit, time"});
   expect_errors(errors("# only a comment\n"), {"launch.yaml:"});
 }
 

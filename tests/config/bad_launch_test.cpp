@@ -8,7 +8,8 @@ const std::string kTwo = "scene: scene.yaml\nregions: {layout: columns, count: 2
 const std::vector<BadCase> kBadLaunches = {
     {"UnknownKey",
      kTwo + "speed: 3\n",
-     {"launch.yaml:3:1: speed: unknown key, allowed: scene, regions, exchange, time, tolerances, aura, physics, dds, "
+     {"launch.yaml:3:1: speed: unknown key, allowed: scene, regions, exchange, exchange_limit, time, tolerances, aura, "
+      "physics, dds, "
       "survival, "
       "observe"}},
     {"KeyGivenTwice",

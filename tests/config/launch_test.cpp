@@ -1,3 +1,6 @@
+#include <cmath>
+
+#include "config/launch_variants.h"
 #include "config/presets.h"
 #include "config/workspace.h"
 
@@ -25,6 +28,55 @@ TEST(LaunchFile, EverythingButSceneAndRegionsHasADefault) {
   EXPECT_THAT(launch.dds.interfaces, testing::ElementsAre("127.0.0.1"));
   EXPECT_TRUE(launch.dds.profiles.is_absolute());
   EXPECT_EQ(launch.observe.tick_hz, 20);
+}
+
+TEST(LaunchFile, ExchangeAutoIsSettledOnlyWhereOneOfTheTwoIsImpossible) {
+  const Workspace workspace;
+  const std::string automatic = std::string(kSmallLaunch) + "exchange: auto\n";
+  const Launch open = workspace.launch(automatic);
+  EXPECT_EQ(open.exchange, Exchange::kAuto);
+  EXPECT_FALSE(open.is_coupled());
+  EXPECT_EQ(open.why_exchange, "");
+  EXPECT_EQ(workspace.launch(automatic, {"regions.count=1"}).exchange, Exchange::kAura);
+  const std::vector<std::vector<std::string>> cases = {
+      {"physics.solver=sequential_impulse"},
+      {"time.sync=free_running"},
+      {"regions={layout: columns, count: 3, width: 40}", "physics.block=64"}};
+  for (const std::vector<std::string>& impossible : cases) {
+    const Launch launch = workspace.launch(automatic, impossible);
+    EXPECT_EQ(launch.exchange, Exchange::kAura) << impossible.front();
+    EXPECT_NE(launch.why_exchange, "") << impossible.front();
+    std::vector<std::string> coupled = impossible;
+    coupled.emplace_back("exchange=coupled");
+    EXPECT_THROW(workspace.launch(automatic, coupled), BadConfig) << impossible.front();
+  }
+  const Launch narrow =
+      workspace.launch(automatic, {"regions={layout: columns, count: 8, width: 2}", "physics.block=1"});
+  EXPECT_TRUE(narrow.is_coupled()) << "auras need wider regions";
+  EXPECT_THAT(narrow.why_exchange, testing::HasSubstr("the narrowest region is 2 m wide"));
+}
+
+TEST(LaunchFile, ExchangeLimitIsGivenOrLeavesTheExchangesOfAStepAQuarterOfItsTime) {
+  const Workspace workspace;
+  EXPECT_NEAR(workspace.launch(kSmallLaunch, {"time.substeps=8"}).exchange_limit_s(), 1.0 / 60 / 4 / 17, 1e-12);
+  EXPECT_NEAR(workspace.launch(kSmallLaunch, {"time.substeps=4"}).exchange_limit_s(), 1.0 / 60 / 4 / 9, 1e-12);
+  EXPECT_EQ(workspace.launch(kSmallLaunch, {"exchange_limit=0.002"}).exchange_limit_s(), 0.002);
+}
+
+TEST(LaunchFile, WhatTheNodesHaveChosenStaysChosenInOtherRegions) {
+  const Workspace workspace;
+  const Launch open = workspace.launch(std::string(kSmallLaunch) + "exchange: auto\n");
+  const std::vector<core::Rectangle> halves = {{-INFINITY, -INFINITY, 8, INFINITY}, {8, -INFINITY, INFINITY, INFINITY}};
+  for (const Exchange chosen : {Exchange::kAura, Exchange::kCoupled}) {
+    const Launch settled = with_exchange(open, chosen);
+    EXPECT_EQ(settled.exchange, chosen);
+    EXPECT_EQ(settled.is_coupled(), chosen == Exchange::kCoupled);
+    EXPECT_EQ(settled.world_identity(), open.world_identity());
+    EXPECT_EQ(with_regions(settled, halves).exchange, chosen);
+  }
+  const Launch narrow = workspace.launch(std::string(kSmallLaunch) + "exchange: auto\n",
+                                         {"regions={layout: columns, count: 8, width: 2}", "physics.block=1"});
+  EXPECT_EQ(with_regions(narrow, halves).exchange, Exchange::kCoupled) << "though wide regions could have auras";
 }
 
 TEST(LaunchFile, Ros2IsSpokenWhereItIsSaid) {

@@ -70,7 +70,7 @@ TEST_F(Overrides, ErrorsNameTheOverride) {
                  "--set regions.count=-3: regions.count: found \"-3\", allowed: an integer from 1 to 1024");
   expect_refused("regions.colour=red", "--set regions.colour=red: regions.colour: unknown key, allowed: layout, count");
   expect_refused("tme.sync=bounded",
-                 "--set tme.sync=bounded: tme: unknown key, allowed: scene, regions, exchange, time");
+                 "--set tme.sync=bounded: tme: unknown key, allowed: scene, regions, exchange, exchange_limit, time");
   expect_refused("time.sync.deep=1", "--set time.sync.deep=1: time.sync: found a map of 1, allowed: free_running");
   expect_refused("scene.gravity=9.81", "--set scene.gravity=9.81: gravity: found \"9.81\", allowed: a list of 3");
 }

@@ -11,6 +11,7 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::StrEq;
 
 class LiveTable : public ::testing::Test {
  protected:
@@ -66,6 +67,19 @@ TEST_F(LiveTable, SaysWhoComputesOneStepForLong) {
   EXPECT_THAT(live_table(statuses_, {}, now), Not(HasSubstr("region 0 computes")));
 }
 
+TEST_F(LiveTable, SaysWhichExchangeRunsAndWhatOneTakes) {
+  have_regions(2);
+  EXPECT_THAT(live_table(statuses_, {}), Not(HasSubstr("exchange"))) << "it is not chosen yet";
+  for (auto& [region, seen] : statuses_) seen.status.exchange = messages::ExchangeInUse::kAura;
+  EXPECT_THAT(lines({}).back(), StrEq("exchange: aura"));
+  for (auto& [region, seen] : statuses_) seen.status.exchange = messages::ExchangeInUse::kCoupled;
+  statuses_[core::RegionId{0}].status.round_trip_ms = 0.12;
+  statuses_[core::RegionId{0}].status.exchange_times = {0.05, 0.2, 1};
+  statuses_[core::RegionId{1}].status.exchange_times = {0.06, 0.3, 1};
+  EXPECT_THAT(lines({}).back(), StrEq("exchange: coupled, chosen for round trips of 0.12 ms, one takes 0.06 ms (99% at "
+                                      "most 0.3 ms, region 1)"));
+}
+
 TEST_F(LiveTable, NamesWhoseMessagesAreRefused) {
   have_regions(1);
   statuses_[core::RegionId{0}].status.refused = {{core::RegionId{2}, 3}, {messages::kNoRegion, 170}};
@@ -91,7 +105,7 @@ TEST_F(LiveTable, MoreRegionsThanRowsAreCounted) {
   have_regions(40);
   const std::vector<std::string> table = lines({80, 24});
   EXPECT_LT(table.size(), 24U) << "the screen would scroll";
-  EXPECT_THAT(table[table.size() - 2], HasSubstr("... 23 more"));
+  EXPECT_THAT(table[table.size() - 2], HasSubstr("... 24 more"));
   EXPECT_THAT(table.back(), HasSubstr("400000")) << "the sums are of all";
 }
 

@@ -42,6 +42,9 @@ TEST(StatusCodec, RoundTripKeepsEverything) {
   EXPECT_EQ(std::get<Status>(decoded).late_collisions, 6U);
   EXPECT_EQ(std::get<Status>(decoded).missed_collisions, 7U);
   EXPECT_EQ(std::get<Status>(decoded).transport.max_ms, 0.9);
+  EXPECT_EQ(std::get<Status>(decoded).exchange_times.p99_ms, 0.06);
+  EXPECT_EQ(std::get<Status>(decoded).exchange, ExchangeInUse::kCoupled);
+  EXPECT_EQ(std::get<Status>(decoded).round_trip_ms, 0.12);
   EXPECT_EQ(std::get<Status>(decoded).listens_to, status_of(1).listens_to);
 }
 
@@ -74,6 +77,9 @@ TEST(StatusCodec, RefusesWhatIsNotSound) {
   EXPECT_EQ(after([](auto& w) { w.footprint_x0(kNan); }), "range");
   EXPECT_EQ(after([](auto& w) { w.footprint_x0(21); }), "range");
   EXPECT_EQ(after([](auto& w) { w.lookahead(-1); }), "range");
+  EXPECT_EQ(after([](auto& w) { w.exchange(3); }), "enum");
+  EXPECT_EQ(after([](auto& w) { w.round_trip_ms(-1); }), "not_finite");
+  EXPECT_EQ(after([](auto& w) { w.exchange_p99_ms(kNan); }), "not_finite");
   EXPECT_EQ(after([](auto& w) { w.dead({4}); }), "range");
   EXPECT_EQ(after([](auto& w) { w.listens_to()[0] = 4; }), "range");
   EXPECT_EQ(after([](auto& w) { w.listens_by()[0] = 4; }), "range");

@@ -31,6 +31,9 @@ inline Status status_of(std::uint32_t region) {
   status.physics = {0.1, 0.2, 0.3};
   status.protocol = {0.4, 0.5, 0.6};
   status.transport = {0.7, 0.8, 0.9};
+  status.exchange_times = {0.05, 0.06, 0.07};
+  status.exchange = ExchangeInUse::kCoupled;
+  status.round_trip_ms = 0.12;
   status.real_time_factor = 0.99;
   status.largest_cluster = 5;
   status.footprint.x1 = 20;  // the other sides are infinite

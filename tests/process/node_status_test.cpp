@@ -78,11 +78,14 @@ TEST_F(NodeStatusTest, AWindowHoldsTheLastSecond) {
   messages::Status status;
   window.note(10, {0.002, 0.001, 0.0005, 0, 0, 0}, kBegin + 10ms);
   window.note(30, {0.004, 0.001, 0.0005, 0, 0, 0}, kBegin + 20ms);
+  window.note_exchanges(std::vector<double>{0.0001, 0.0003});
   window.summarize(status);
+  EXPECT_DOUBLE_EQ(status.exchange_times.max_ms, 0.3);
   EXPECT_DOUBLE_EQ(status.frame.max_ms, 30);
   EXPECT_DOUBLE_EQ(status.physics.max_ms, 4);
   window.note(5, {0.001, 0, 0, 0, 0, 0}, kBegin + 1001ms);
   window.summarize(status);
+  EXPECT_DOUBLE_EQ(status.exchange_times.max_ms, 0) << "no exchange in this second";
   EXPECT_DOUBLE_EQ(status.frame.max_ms, 5);
   EXPECT_DOUBLE_EQ(status.physics.max_ms, 1);
 }

@@ -81,13 +81,14 @@ TEST_F(NoticesTest, AWallClockThatIsSetIsNews) {
 }
 
 TEST_F(NoticesTest, AClusterOfMostBodiesIsSaidOnce) {
-  notices_.note_cluster(999, 999, 5);
-  notices_.note_cluster(1200, 2401, 6);
+  notices_.note_cluster(999, 999, 5, {});
+  notices_.note_cluster(1200, 2401, 6, {});
   EXPECT_EQ(notices_.text(), "") << "it is small, or less than half of the node's bodies";
-  notices_.note_cluster(1200, 2400, 7);
+  notices_.note_cluster(1200, 2400, 7, "exchange: coupled divides them");
   EXPECT_EQ(notices_.text().find("1200 of the 2400 bodies here are one cluster in state 7"), 0U) << notices_.text();
+  EXPECT_NE(notices_.text().find("exchange: coupled divides them"), std::string::npos) << notices_.text();
   notices_.note_news("went back to state 3");
-  notices_.note_cluster(2400, 2400, 8);
+  notices_.note_cluster(2400, 2400, 8, {});
   EXPECT_EQ(notices_.text(), "went back to state 3");
 }
 

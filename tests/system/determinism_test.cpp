@@ -40,6 +40,16 @@ TEST_F(Determinism, CoupledRegionsAreEqualToTheCentralRun) {
   }
 }
 
+TEST_F(Determinism, WhatAutoMeansIsMeasuredAndHasTheBitsOfTheCentralRun) {
+  const std::string central = hashes("auto_central", "demo", 300, {"regions.count=1"});
+  const std::string near = hashes("near", "demo", 300, {"exchange=auto", "exchange_limit=10"});
+  EXPECT_EQ(report_of("near").entry("exchange"), "coupled");
+  EXPECT_EQ(first_difference(near, central), "");
+  const std::string far = hashes("far", "demo", 300, {"exchange=auto", "exchange_limit=0.000001"});
+  EXPECT_EQ(report_of("far").entry("exchange"), "aura");
+  EXPECT_EQ(first_difference(far, central), "");
+}
+
 /// Without auras the demo first goes wrong at a border in state 434.
 constexpr int kUntilBordersMatter = 600;
 

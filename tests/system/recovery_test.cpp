@@ -65,6 +65,17 @@ TEST_F(Recovery, ACoupledRegionComesBackWithTheSameBits) {
   expect_survives(run_of_demo(set({"exchange=coupled"})), {2});
 }
 
+/// The new process takes the exchange from the others, and measures nothing.
+TEST_F(Recovery, ARegionComesBackWithTheExchangeThatTheNodesHaveChosen) {
+  expect_survives(run_of_demo(set({"exchange=auto", "exchange_limit=10"})), {2});
+  EXPECT_EQ(report_of("run").entry("exchange"), "coupled");
+}
+
+TEST_F(Recovery, RegionZeroWhichHasChosenTheExchangeMayDieToo) {
+  expect_survives(run_of_demo(set({"exchange=auto", "exchange_limit=10"})), {0});
+  EXPECT_EQ(report_of("run").entry("exchange"), "coupled");
+}
+
 TEST_F(Recovery, RegionZeroWhichTakesOrdersMayDieToo) { expect_survives(run_of_demo(), {0}); }
 
 TEST_F(Recovery, TwoAtOnceThatDoNotKeepEachOthersParts) { expect_survives(run_of_demo(), {1, 3}); }

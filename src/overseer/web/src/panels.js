@@ -46,6 +46,18 @@ export class TopBar {
 const ABOUT_LISTENING = "Regions whose nodes and this one hear each other. Those that are not near each other on the map " +
   "were introduced by a third, because bodies came near.";
 
+const ABOUT_EXCHANGE = "How bodies of two regions touch. Aura: one node hosts both of them in time. Coupled: their nodes solve the " +
+  "contact together, with several exchanges in each step. The times are those of the slowest node in the last second.";
+
+/** How bodies of two regions touch, and what an exchange of coupled regions takes. */
+function exchangeOf(nodes) {
+  const known = nodes.filter(({ exchange }) => exchange === "aura" || exchange === "coupled");
+  if (known.length === 0) return "";
+  const slowest = known.reduce((a, b) => ((b.exchange_ms?.p99 ?? 0) > (a.exchange_ms?.p99 ?? 0) ? b : a));
+  const { p50 = 0, p99 = 0 } = slowest.exchange_ms ?? {};
+  return p99 > 0 ? `${slowest.exchange}: ${fixed(p50, 2)} ms an exchange, p99 ${fixed(p99, 2)} ms` : slowest.exchange;
+}
+
 /** One node's card. */
 class NodeCard {
   constructor(region) {
@@ -120,9 +132,10 @@ export class NodesPanel {
     this.handOffs = h("span");
     this.warnings = h("span", { title: ABOUT_WARNINGS });
     this.late = h("span", { title: ABOUT_LATE });
+    this.exchange = h("span", { title: ABOUT_EXCHANGE });
     this.list = h("div.node-list");
     this.element.append(h("header.panel-head", {}, h("h2", {}, "Nodes"),
-      h("p.totals", {}, this.handOffs, this.warnings, this.late)), this.list);
+      h("p.totals", {}, this.handOffs, this.warnings, this.late, this.exchange)), this.list);
     this.cards = new Map();
     this.clear();
   }
@@ -130,7 +143,7 @@ export class NodesPanel {
   clear() {
     this.cards.clear();
     this.list.replaceChildren(h("p.empty", {}, "No node has said anything yet."));
-    for (const total of [this.handOffs, this.warnings, this.late]) total.textContent = "";
+    for (const total of [this.handOffs, this.warnings, this.late, this.exchange]) total.textContent = "";
     this.late.classList.remove("alarm");
   }
 
@@ -149,5 +162,6 @@ export class NodesPanel {
     this.warnings.textContent = warnings > 0 ? `${grouped(warnings)} ${warnings === 1 ? "warning" : "warnings"}` : "";
     this.late.textContent = late > 0 ? `${grouped(late)} late` : late === 0 ? "none late" : "";
     this.late.classList.toggle("alarm", late > 0);
+    this.exchange.textContent = nodes.length > 1 ? exchangeOf(nodes) : "";
   }
 }

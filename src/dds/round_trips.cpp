@@ -1,0 +1,90 @@
+#include "dds/round_trips.h"
+
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "dds/typed_endpoints.h"
+#include "messages/seam_codec.h"
+
+namespace aurasim::dds {
+namespace {
+
+constexpr std::uint32_t kQuestion = 1, kAnswer = 2;
+
+struct Asked {
+  Asked(Domain& domain, core::RegionId self, core::RegionId peer, Wakeup& wakeup)
+      : reader(domain, on(TopicId::kProbe, {.source = peer, .destination = self}, self), wakeup),
+        writer(domain, on(TopicId::kProbe, {.source = self, .destination = peer}, self), wakeup) {}
+
+  Reader reader;
+  Writer writer;
+};
+
+}  // namespace
+
+struct RoundTrips::Impl {
+  Impl(Participant& participant_in, core::RegionId self_in, std::uint32_t region_count, std::uint64_t map_version)
+      : participant(participant_in), self(self_in) {
+    expected.map_version = map_version;
+    expected.destination = self;
+    expected.region_count = region_count;
+    for (std::uint32_t r = 0; r < region_count; ++r) {
+      const core::RegionId peer{r};
+      if (peer == self || (core::value_of(self) != 0 && r != 0)) continue;
+      peers.try_emplace(peer, participant.domain(), self, peer, participant.domain().wakeup());
+    }
+  }
+
+  void send(core::RegionId to, std::uint32_t number, std::uint32_t what) {
+    messages::encode({self, to, 0, number, what}, *expected.map_version, {}, sample);
+    peers.at(to).writer.write(&sample);  // a message that is not sent counts as lost
+  }
+  std::vector<Answer> take(std::uint32_t what);
+
+  Participant& participant;
+  core::RegionId self;
+  std::map<core::RegionId, Asked> peers;
+  messages::Expected expected;
+  wire::SeamParcel sample;  // reused
+};
+
+std::vector<RoundTrips::Answer> RoundTrips::Impl::take(std::uint32_t what) {
+  std::vector<Answer> taken;
+  participant.progress();
+  for (auto& [region, peer] : peers) {
+    expected.source = region;
+    Origin origin;
+    while (peer.reader.take(&sample, &origin)) {
+      if (!participant.domain().speakers().may_speak(origin.writer, region)) {
+        peer.reader.refuse_from(origin, fmt::format("it is not the node of region {}", core::value_of(region)));
+        continue;
+      }
+      const auto decoded = messages::decode(sample, expected);
+      if (const auto* error = std::get_if<messages::WireError>(&decoded)) {
+        peer.reader.refuse_from(origin, *error);
+        continue;
+      }
+      const messages::SeamHeader& header = std::get<messages::SeamParcel>(decoded).header;
+      if (header.number == what) taken.push_back({region, static_cast<std::uint32_t>(header.step)});
+    }
+  }
+  return taken;
+}
+
+RoundTrips::RoundTrips(Participant& participant, core::RegionId self, std::uint32_t region_count,
+                       std::uint64_t map_version)
+    : impl_(std::make_unique<Impl>(participant, self, region_count, map_version)) {}
+
+RoundTrips::~RoundTrips() = default;
+
+void RoundTrips::ask(core::RegionId region, std::uint32_t number) { impl_->send(region, number, kQuestion); }
+
+std::vector<RoundTrips::Answer> RoundTrips::take_answers() { return impl_->take(kAnswer); }
+
+void RoundTrips::answer() {
+  for (const Answer& question : impl_->take(kQuestion)) impl_->send(question.region, question.number, kAnswer);
+}
+
+}  // namespace aurasim::dds
