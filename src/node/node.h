@@ -143,10 +143,11 @@ class Node {
   /// Takes in the bodies that are still under way to this region, so that every state's hash is whole.
   const StepReport& settle();
 
-  /// Changes to another map in the present state. Precondition: all bodies are where the new map wants them, and every
-  /// node of the run changes in the same state. `map` and `transport` must outlive the node.
+  /// Changes to another map in the present state. Precondition: all bodies are where the new map wants them, or regions
+  /// are coupled, and every node of the run changes in the same state. `map`, `transport` and `seams` must outlive the
+  /// node; `seams` is null unless regions are coupled.
   const StepReport& take_map(const core::ProtocolSettings& settings, const core::RegionMap& map,
-                             transport::Transport& transport);
+                             transport::Transport& transport, core::SeamMail* seams);
 
   core::RegionId region() const { return setup_.protocol.self; }
   /// Report of the last step.

@@ -56,7 +56,7 @@ const StepReport& Node::start(core::WorldCut world, Recorded recorded) {
 }
 
 const StepReport& Node::take_map(const core::ProtocolSettings& settings, const core::RegionMap& map,
-                                 transport::Transport& transport) {
+                                 transport::Transport& transport, core::SeamMail* seams) {
   clear_report();
   held_.begin_step();
   confirm_all();
@@ -70,6 +70,8 @@ const StepReport& Node::take_map(const core::ProtocolSettings& settings, const c
   transport_ = &transport;
   inbox_.clear();
   protocol_.emplace(setup_.protocol, map, *clearance_);
+  setup_.seams = seams;
+  if (seams != nullptr) couple();  // blocks have other owners, to which bodies go in the next step
   begin_state(Recorded::kYes);
   take_cut();
   hold();

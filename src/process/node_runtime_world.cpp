@@ -80,7 +80,7 @@ void NodeRuntime::begin_changed_map() {
   endpoints.note_served_map();
   control().use_map(launch.regions.version());
   notices.begin_refusals();
-  const node::StepReport& report = node->take_map(setup.protocol, launch.regions, transport());
+  const node::StepReport& report = node->take_map(setup.protocol, launch.regions, transport(), transport().seams());
   endpoints.observers().after_step(*node, report);
   record(node->confirmed());
   schedule.go_on_after(node->current_step(), *start.start(), node::read_clocks());
