@@ -125,7 +125,7 @@ void NodeRuntime::note_exchanges(Clock::time_point now) {
   const auto slow =
       exchange_watch.note(times->seconds, times->waited_for, times->waited_s, launch.exchange_limit_s(), now);
   if (!slow) return;
-  spdlog::warn("region {}: {}", core::value_of(options.region), *slow);
+  spdlog::warn("{}", *slow);
   notices.note_news(*slow);
 }
 

@@ -232,6 +232,7 @@ void Recorder::write_summary(node::Node& node, const Ending& ending) const {
   if (const TimeHistogram& times = ending.exchanges; times.count() > 0) {
     summary["exchanges"] = {{"count", times.count()},
                             {"p50_ms", 1e3 * times.percentile_s(0.5)},
+                            {"p90_ms", 1e3 * times.percentile_s(0.9)},
                             {"p99_ms", 1e3 * times.percentile_s(0.99)},
                             {"max_ms", 1e3 * times.longest_s()}};
   }
