@@ -21,8 +21,18 @@ Audience InterestMatching::audience(std::uint32_t i) const {
   return near != kNobodyListens && has_narrow_regions_ ? kAllListeners : near;
 }
 
+double InterestMatching::band(double speed_m_s, int hops) const {
+  return aura_.zone(speed_m_s, hops, std::max(others_top_speed_, speed_m_s), others_top_radius_);
+}
+
+/// Where pulls do not chain, zones do not depend on clusters. So they are known before bodies are compared.
+void InterestMatching::find_zones() {
+  widest_band_m_ = band(top_speed(), clusters_.most_hops() + horizon::kHomewardHops);
+  for (const std::uint32_t i : own_.close()) zones_[i] = zone_of(i);
+}
+
 /// The owners of territory within the zone of body i.
-Audience InterestMatching::owners_in_zone(std::uint32_t i) const {
+Audience InterestMatching::zone_of(std::uint32_t i) const {
   const Path& path = own_.path(i);
   const Vec3& p = path.pose.p_WB;
   if (vicinity_.deep_inside(p, widest_band_m_ + path.radius_m)) return kNobodyListens;

@@ -42,9 +42,13 @@ void InterestMatching::look(const Snapshot& snapshot, std::span<const Neighbour>
   mark_regions();
   bring_together(snapshot);
   form_clusters(snapshot);
-  if (pulls_chain()) complete_near_boundaries();
+  if (pulls_chain()) {
+    complete_near_boundaries();
+  } else {
+    find_zones();
+  }
   pair_up();
-  widest_band_m_ = band(top_speed(), clusters_.most_hops() + kHomewardHops);
+  if (pulls_chain()) widest_band_m_ = band(top_speed(), clusters_.most_hops() + kHomewardHops);
   judge();
 }
 
@@ -55,12 +59,14 @@ void InterestMatching::clear_marks() {
     regions_.assign(n, 0);
     noticed_.assign(n, 0);
     noticed_by_.assign(n, kNobodyListens);
+    zones_.assign(n, kNobodyListens);
     announced_to_all_.assign(n, 0);
     touched_.assign(n, 0);
     expected_.assign(n, 0);
     pulled_to_.assign(n, vicinity_.self);
   } else {
     for (const std::uint32_t i : near_) regions_[i] = 0;
+    for (const std::uint32_t i : near_others_) zones_[i] = kNobodyListens;
     for (const std::uint32_t i : marked_) {
       noticed_[i] = announced_to_all_[i] = 0;
       noticed_by_[i] = kNobodyListens;
@@ -117,10 +123,6 @@ void InterestMatching::gather_foreign(const Snapshot& snapshot, std::span<const 
     if (!own_.find(ghost.id)) foreign_.add(ghost, ghost.stamp, snapshot.step, aura_);
   }
   foreign_.build();
-}
-
-double InterestMatching::band(double speed_m_s, int hops) const {
-  return aura_.zone(speed_m_s, hops, std::max(others_top_speed_, speed_m_s), others_top_radius_);
 }
 
 /// Gathers our bodies whose clusters have to be complete, whether a foreign body is near or not. Where pulls chain,
@@ -225,17 +227,15 @@ void InterestMatching::notice_grown() {
   }
 }
 
-/// The least number of hops at which ranges are evaluated.
-int InterestMatching::least_hops() const { return pulls_chain() ? 0 : clusters_.most_hops() + kHomewardHops; }
-
-/// Fills ranges_ with range_of(body, hops) of all bodies of the block, from least_hops() on.
+/// Fills ranges_ with range_of(body, hops) of all bodies of the block, from `least_hops` on.
 template <class RangeOf>
-void InterestMatching::take_ranges(const ForeignBlock& block, RangeOf&& range_of) {
+void InterestMatching::take_ranges(const ForeignBlock& block, int least_hops, RangeOf&& range_of) {
   const int most_hops = clusters_.most_hops() + kHomewardHops;
   ranges_.clear();
-  ranges_each_ = static_cast<std::size_t>(most_hops - least_hops()) + 1;
+  least_hops_ = pulls_chain() ? 0 : least_hops;
+  ranges_each_ = static_cast<std::size_t>(most_hops - least_hops_) + 1;
   for (const std::uint32_t f : block.bodies) {
-    for (int hops = least_hops(); hops <= most_hops; ++hops) ranges_.push_back(range_of(foreign_[f].path, hops));
+    for (int hops = least_hops_; hops <= most_hops; ++hops) ranges_.push_back(range_of(foreign_[f].path, hops));
   }
 }
 
@@ -250,20 +250,24 @@ double InterestMatching::widest_range(double speed_m_s) const {
 
 /// Is `own` in range of the k-th body of the block? Call after take_ranges().
 bool InterestMatching::is_in_range(const ForeignBlock& block, std::size_t k, const Candidate& own) const {
-  const std::size_t column = own.hops - static_cast<std::size_t>(least_hops());
+  const std::size_t column = own.hops - static_cast<std::size_t>(least_hops_);
   const double range = ranges_[k * ranges_each_ + column].at(own.speed_m_s);
   return is_within(foreign_[block.bodies[k]].path, own.p_WB, own.radius_m, range);
 }
 
-/// Finds our bodies that have to be announced because foreign ones are near. In a pile most of them are known already.
+/// Finds our bodies that have to be announced because foreign ones are near. Most of them are known already: their
+/// zones reach into that host's territory, or they lie in a pile.
 void InterestMatching::notice(const ForeignBlock& block) {
   const Audience region = vicinity_.bit_of(block.host);
-  const auto knows = [&](std::uint32_t i) { return noticed_[i] && (noticed_by_[i] & region) == region; };
-  take_ranges(block, [&](const Path& path, int hops) { return aura_.notice(path.speed_m_s, path.age_steps, hops); });
+  const auto knows = [&](std::uint32_t i) {
+    return ((noticed_by_[i] | zones_[i]) & region) == region && (noticed_[i] || region != kNobodyListens);
+  };
+  take_ranges(block, clusters_.most_hops() + kHomewardHops,
+              [&](const Path& path, int hops) { return aura_.notice(path.speed_m_s, path.age_steps, hops); });
   candidates_.clear();
   const auto range_at = [this](double speed_m_s) { return widest_range(speed_m_s); };
   clusters_.near().for_each_near(block.lo, block.hi, range_at, [&](std::uint32_t i) {
-    if (!knows(i)) candidates_.push_back(candidate(i, own_.path(i).speed_m_s));
+    if (!knows(i)) candidates_.push_back(candidate(i, own_.path(i).speed_m_s, kHomewardHops));
   });
   for (std::size_t k = 0; k < block.bodies.size(); ++k) {
     std::erase_if(candidates_, [&](const Candidate& c) {
@@ -286,8 +290,8 @@ void InterestMatching::note(std::uint32_t own, RegionId host) {
   news_.push_back({own, region});
 }
 
-InterestMatching::Candidate InterestMatching::candidate(std::uint32_t own, double speed_m_s) const {
-  const auto hops = static_cast<std::size_t>(clusters_.hops(own) + kHomewardHops);
+InterestMatching::Candidate InterestMatching::candidate(std::uint32_t own, double speed_m_s, int more_hops) const {
+  const auto hops = static_cast<std::size_t>(clusters_.hops(own) + more_hops);
   return {own_.path(own).pose.p_WB, own_.path(own).radius_m, speed_m_s, hops, own};
 }
 
@@ -319,14 +323,14 @@ void InterestMatching::notice_again(std::uint32_t own) {
 }
 
 /// Finds pairs of a foreign and an own body that may meet. Such bodies have been noticed before, because meetings reach
-/// less far than notice.
+/// less far than notice. Of those that have a way home, also pairs that may meet one hop later (judge_expected()).
 void InterestMatching::find_pairs(const ForeignBlock& block) {
   const double drift = 1 + aura_.rules().uncertainty;  // upper bound of Aura::drift_m_s() for each m/s of top speed
-  take_ranges(block, [&](const Path& path, int hops) { return aura_.meet_range(path, hops); });
+  take_ranges(block, clusters_.most_hops(), [&](const Path& path, int hops) { return aura_.meet_range(path, hops); });
   candidates_.clear();
   const auto range_at = [&](double speed_m_s) { return widest_range(drift * speed_m_s); };
   clusters_.near().for_each_near(block.lo, block.hi, range_at, [&](std::uint32_t i) {
-    candidates_.push_back(candidate(i, aura_.drift_m_s(own_.path(i))));
+    candidates_.push_back(candidate(i, aura_.drift_m_s(own_.path(i)), outside(i) ? kHomewardHops : 0));
   });
   for (std::size_t k = 0; k < block.bodies.size(); ++k) {
     for (const Candidate& c : candidates_) {

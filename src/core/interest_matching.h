@@ -54,10 +54,6 @@ class InterestMatching {
   /// The lowest host among the auras that met the cluster, if it is lower than ours; otherwise our own region.
   RegionId pulled_to(std::uint32_t i) const { return pulled_to_[clusters_.of(i)]; }
 
-  /// A foreign aura is near body i.
-  bool noticed(std::uint32_t i) const { return noticed_[i] != 0; }
-  /// All noticed bodies, and perhaps some others; ascending.
-  std::span<const std::uint32_t> marked() const { return marked_; }
   std::span<const Pair> pairs() const { return pairs_; }
   const Foreign& foreign(std::uint32_t i) const { return foreign_[i]; }
 
@@ -85,7 +81,6 @@ class InterestMatching {
                       std::span<const AuraRecord> ghosts);
   void mark_regions();
   void complete_near_boundaries();
-  int least_hops() const;
   void pair_up();
   void notice(const ForeignBlock& block);
   void notice_grown();
@@ -94,9 +89,9 @@ class InterestMatching {
   void take_news();
   void find_pairs(const ForeignBlock& block);
   bool is_in_range(const ForeignBlock& block, std::size_t k, const Candidate& own) const;
-  Candidate candidate(std::uint32_t own, double speed_m_s) const;
+  Candidate candidate(std::uint32_t own, double speed_m_s, int more_hops) const;
   template <class RangeOf>
-  void take_ranges(const ForeignBlock& block, RangeOf&& range_of);
+  void take_ranges(const ForeignBlock& block, int least_hops, RangeOf&& range_of);
   double widest_range(double speed_m_s) const;
   template <class Visit>
   void for_each_foreign_near(std::uint32_t own, Visit&& visit) const;
@@ -106,7 +101,9 @@ class InterestMatching {
   void hit(std::uint32_t own, RegionId host);
   void complete_hit_clusters();
   bool pulls_chain() const { return aura_.rules().pulls_chain(); }
-  Audience owners_in_zone(std::uint32_t i) const;
+  Audience owners_in_zone(std::uint32_t i) const { return pulls_chain() ? zone_of(i) : zones_[i]; }
+  void find_zones();
+  Audience zone_of(std::uint32_t i) const;
   void bring_together(const Snapshot& snapshot);
   bool meets(const Foreign& foreign, const Path& own, int hops) const;
   double band(double speed_m_s, int hops) const;
@@ -130,6 +127,7 @@ class InterestMatching {
   std::vector<Pair> pairs_;
   std::vector<Range> ranges_;          ///< by foreign body of the block, then by hops
   std::size_t ranges_each_ = 0;        ///< entries of ranges_ for each body
+  int least_hops_ = 0;                 ///< hops of the first of them
   std::vector<Candidate> candidates_;  ///< our bodies that may be in range of a block
   struct News {
     std::uint32_t own;
@@ -139,7 +137,8 @@ class InterestMatching {
   std::vector<std::uint32_t> grown_;  ///< our bodies whose range has grown
   std::vector<std::uint32_t> near_;
   std::vector<std::uint8_t> noticed_;
-  std::vector<Audience> noticed_by_;  ///< hosts of the foreign bodies near each of ours
+  std::vector<Audience> noticed_by_;  ///< hosts of the foreign bodies near each of ours, but for those of zones_
+  std::vector<Audience> zones_;       ///< owners of territory within the zone of each of ours, where pulls do not chain
   std::vector<std::uint8_t> announced_to_all_;
   std::vector<std::uint32_t> marked_;  ///< bodies of which one of the three is set
   struct Hit {

@@ -171,9 +171,9 @@ void CollisionWatch::remember(const core::Snapshot& snapshot, const core::Intere
     state.bodies.clear();
     states_.pop_front();
   }
-  for (const std::uint32_t i : matching.marked()) {
+  for (const std::uint32_t i : matching.near_others()) {
     const bool born = snapshot.bodies[i].birth <= snapshot.step;
-    if (born && matching.noticed(i)) state.bodies.push_back({snapshot.bodies[i].id, snapshot.bodies[i].pose});
+    if (born) state.bodies.push_back({snapshot.bodies[i].id, snapshot.bodies[i].pose});
   }
   states_.push_back(std::move(state));
 }

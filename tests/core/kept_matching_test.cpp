@@ -217,7 +217,6 @@ class TwoLooks {
       SCOPED_TRACE(i);
       ASSERT_EQ(is.audience(i), wanted.audience(i));
       ASSERT_EQ(is.outside(i), wanted.outside(i));
-      ASSERT_EQ(is.noticed(i), wanted.noticed(i));
       ASSERT_EQ(is.touched(i), wanted.touched(i));
       ASSERT_EQ(is.expected(i), wanted.expected(i));
       ASSERT_EQ(is.pulled_to(i), wanted.pulled_to(i));
@@ -229,7 +228,6 @@ class TwoLooks {
       const Audience none = kNobodyListens;
       ASSERT_TRUE(std::ranges::binary_search(is.near_others(), i) ||
                   (wanted.audience(i) == none && !wanted.outside(i)));
-      ASSERT_TRUE(std::ranges::binary_search(is.marked(), i) || !wanted.noticed(i));
     }
     ASSERT_EQ(is.clusters().links().size(), wanted.clusters().links().size());
     const auto pair_of = [](const InterestMatching::Pair& pair) { return std::pair(pair.foreign, pair.own); };
