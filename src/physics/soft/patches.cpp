@@ -28,8 +28,8 @@ constexpr double kHertzOfSubsteps = 0.25, kHertzOfSteps = 1.5;
 /// load, in weights of the lighter body, up to which both shares count, and from which on only the first does
 constexpr Real kLight = 2, kHeavy = 10;
 constexpr Real kDamping = 2;  ///< damping over critical damping: with 3 piles sway, with 1 cards wander
-/// Points that approach more slowly do not bounce.
-constexpr Real kRestSpeed_m_s = Real(0.5);
+/// Points that approach more slowly than a body that falls for so many steps do not bounce: they rest.
+constexpr Real kStepsOfRest = 2;
 constexpr int kBounceSweeps = 8;  ///< several sweeps, because the points of a face share a bounce
 
 struct Vec {
@@ -98,7 +98,8 @@ SoftInertia inertia_of(const btRigidBody& body) {
 }
 
 SoftPatches::SoftPatches(double step_s, int substeps)
-    : substep_s_(static_cast<Real>(step_s / substeps)),
+    : step_s_(static_cast<Real>(step_s)),
+      substep_s_(static_cast<Real>(step_s / substeps)),
       light_hertz_(static_cast<Real>(std::min(kHertzOfSubsteps * substeps, kHertzOfSteps) / step_s)),
       heavy_hertz_(static_cast<Real>(kHertzOfSubsteps * substeps / step_s)) {}
 
@@ -129,6 +130,7 @@ void SoftPatches::put(std::size_t i, SoftPatch& patch, std::int32_t a, std::int3
 
 void SoftPatches::build(const Mover* movers, const SoftInertia* inertias, const Real (&gravity)[3], soft::Team& team) {
   blocks_.resize(layout_.place(team));
+  rest_m_s_ = kStepsOfRest * step_s_ * std::sqrt(dot(vec(gravity), vec(gravity)));
   may_bounce_.assign(blocks_.size(), 0);
   bounces_.assign(static_cast<std::size_t>(team.employed()), 0);
   team.side_by_side([&](const soft::Worker& worker) {
@@ -226,7 +228,7 @@ void SoftPatches::bounce(Mover* movers, SoftExchange* shared, const soft::Worker
   const auto work = [&](int, std::size_t first, std::size_t count, std::size_t points) {
     for (std::size_t k = first; k < first + count; ++k) {
       if (may_bounce_[k] != 0) {
-        soft::kernel().bounce(&blocks_[k], 1, static_cast<int>(points), movers, kRestSpeed_m_s);
+        soft::kernel().bounce(&blocks_[k], 1, static_cast<int>(points), movers, rest_m_s_);
       }
     }
   };
@@ -245,7 +247,7 @@ bool SoftPatches::may_bounce(std::size_t i) const {
   const soft::Block& block = blocks_[layout_.block(i)];
   const auto lane = layout_.lane(i);
   for (int k = 0; k < patches_[i]->count; ++k) {
-    if (block.points[k].approach[lane] < -kRestSpeed_m_s) return true;
+    if (block.points[k].approach[lane] < -rest_m_s_) return true;
   }
   return false;
 }

@@ -77,7 +77,8 @@ class SoftPatches {
   void remember(std::size_t i) const;
   void fill(std::size_t at, const soft::Mover* movers, const SoftInertia* inertias, const soft::Real (&gravity)[3]);
 
-  soft::Real substep_s_;
+  soft::Real step_s_, substep_s_;
+  soft::Real rest_m_s_ = 0;               ///< points that approach more slowly do not bounce
   soft::Real light_hertz_, heavy_hertz_;  ///< frequencies of the springs between bodies, by load
   std::vector<SoftPatch*> patches_;
   SoftLayout layout_{SoftLayout::Waits::kInEachPhase};  ///< the kind is the number of points
