@@ -84,7 +84,7 @@ const KeysOf<Aura>& aura_keys() {
                    "formula; none: the control that must fail, with time.redo off"),
           optional("uncertainty", &Aura::uncertainty, number(Range::from_to(0, 10)).or_word("auto"),
                    "U, share of its speed by which a body may leave its foreseen path before that counts as broken; "
-                   "auto: 0.5, from a lookahead K of 4 on 1.6 / K, with sync free_running 1.5")
+                   "auto: 0.5, from a lookahead K of 4 on 1.2 / K, with sync free_running 1.5")
               .usual("auto"),
       });
   return keys;

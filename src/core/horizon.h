@@ -46,10 +46,12 @@ constexpr Step check(int lookahead) { return lookahead + made_up(lookahead); }
 inline constexpr Step kBetweenCuts = 2;
 /// Number of states between the older cuts, which are kept for pairs that a redo has not brought together.
 inline constexpr Step kBetweenOlderCuts = 15 * kBetweenCuts;
-/// A redo goes back to a cut at least so many states before the touch that it has to prevent. The pair comes to one
-/// host through one pull, which is decided one state after its cause is known. Where it takes more pulls, the next redo
-/// goes back to an older cut.
-constexpr Step before_touch(int lookahead) { return 2 + (lookahead + 1); }
+/// A redo goes back to a cut at least so many states before the touch that it has to prevent. In the state of the cut
+/// the nodes gather (Protocol::gather), so the pair has one host from the next state on.
+inline constexpr Step kBeforeTouch = 1;
+/// The next redo for the same pair goes back at least so many states. The pair comes to one host through a pull, which
+/// is decided one state after its cause is known. Where it takes more pulls, further redos go back to older cuts.
+constexpr Step before_pull(int lookahead) { return 2 + (lookahead + 1); }
 /// A redo keeps a pair on one host for so many states after its touch. After that, contacts and auras keep it together.
 constexpr Step together_after_touch(int lookahead) { return 2 * lookahead + 2; }
 

@@ -45,7 +45,10 @@ std::vector<Row> take_from(std::vector<Neighbour>& neighbours, std::vector<Row> 
 
 Intake::Intake(const IntakeSettings& settings, const Vicinity& vicinity, DepartureLedger& departures)
     : settings_(settings), vicinity_(vicinity), map_version_(vicinity.map.version()), departures_(departures) {
-  for (const RegionId id : vicinity.neighbours) neighbours_.emplace_back(id, vicinity.self, settings.start);
+  for (const RegionId id : vicinity.neighbours) {
+    neighbours_.emplace_back(id, vicinity.self, settings.start);
+    if (settings.knows_start) neighbours_.back().await_gathering();
+  }
 }
 
 const Neighbour* Intake::find(RegionId id) const {
@@ -98,7 +101,9 @@ void Intake::accept(Inbox& inbox) {
     if (!belongs(batch, batch.map_version)) return;
     Neighbour& neighbour = *find(batch.source);
     if (batch.word > 0) {
-      if (!neighbour.accept_word(std::move(batch))) ++counters_.copies;
+      const bool is_new = batch.word == kGathered ? batch.stamp == settings_.start && neighbour.note_gathered(batch)
+                                                  : neighbour.accept_word(std::move(batch));
+      if (!is_new) ++counters_.copies;
       return;
     }
     if (batch.stamp > neighbour.received() + kMostStatesAhead) {
@@ -171,7 +176,18 @@ Step Intake::needed_for(Step n) const {
 
 bool Intake::keeps_waiting(const Neighbour& neighbour, Step n) const {
   const Step needed = needed_for(n);
+  if (neighbour.alive() && !neighbour.has_gathered()) return true;
   return needed >= settings_.start && !has_all(neighbour, needed);
+}
+
+bool Intake::knows_all_of_start() const {
+  return std::ranges::all_of(neighbours_, [&](const Neighbour& q) { return has_all(q, settings_.start); });
+}
+
+void Intake::take_start() {
+  for (Neighbour& neighbour : neighbours_) {
+    if (neighbour.alive()) neighbour.apply_until(settings_.start);
+  }
 }
 
 bool Intake::has_all(const Neighbour& neighbour, Step until) const {

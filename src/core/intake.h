@@ -21,8 +21,9 @@ struct IntakeSettings {
   std::uint32_t redo = 0;
   SyncMode sync = SyncMode::kBounded;
   int lookahead = 1;
-  Step start = 0;            ///< the first state that any node publishes
-  bool knows_start = false;  ///< true: batches of `start` take effect in the next state instead of K later
+  Step start = 0;  ///< the first state that any node publishes
+  /// True: batches of `start` take effect in the next state instead of K later, and the nodes gather in `start`.
+  bool knows_start = false;
 };
 
 /// A cluster that joins this node, as it was in state `stamp`.
@@ -59,6 +60,10 @@ class Intake {
 
   bool ready(Step n) const;
   std::vector<RegionId> missing(Step n) const;
+  /// Has everything arrived that all live neighbours had to say of the state `start`, before they gather?
+  bool knows_all_of_start() const;
+  /// Lets what the neighbours have said of the state `start` take effect, in that state.
+  void take_start();
 
   /// Lets messages take effect before state `n` is computed. Returns the clusters that join, in the order in which they
   /// join.

@@ -46,14 +46,17 @@ struct HandOffMark {
   std::uint64_t last_sequence = 0;
 };
 
+/// AuraBatch::word of the batch that says that a node has gathered (Protocol::gather).
+inline constexpr std::uint32_t kGathered = 0xFFFF'FFFF;
+
 /// One per node and step, even when nothing changed: it also means "this step is done". While the run stands, a node
-/// publishes more of the same stamp, its words (core/standing.h).
+/// publishes more of the same stamp, its words (core/standing.h), and one more in the state in which a redo begins.
 struct AuraBatch {
   RegionId source{};
   Generation generation = 0;
   std::uint32_t redo = 0;  ///< how often this generation has been put back by a redo
   Step stamp = 0;
-  std::uint32_t word = 0;  ///< 0: the batch of a step; else the number of a word, which has nothing but `past`
+  std::uint32_t word = 0;  ///< 0: the batch of a step; else the number of a word, which has only `past`, or `hand_offs`
   std::uint64_t map_version = 0;
   bool full = false;  ///< `updates` is the whole set: the receiver forgets what it knew of this source
   double top_speed_m_s = 0;

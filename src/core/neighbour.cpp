@@ -46,11 +46,22 @@ const AuraBatch* Neighbour::word(Step stamp, std::uint32_t number) const {
   return found == words_.end() ? nullptr : &*found;
 }
 
-/// Orders and alarms count as soon as they arrive: they name states themselves.
-void Neighbour::note_arrival(const AuraBatch& batch) {
+bool Neighbour::note_gathered(const AuraBatch& word) {
+  if (has_gathered_) return false;
+  has_gathered_ = true;
+  note_marks(word);
+  return true;
+}
+
+void Neighbour::note_marks(const AuraBatch& batch) {
   for (const HandOffMark& mark : batch.hand_offs) {
     if (mark.destination == self_) marks_.push_back({batch.stamp, mark.last_sequence});
   }
+}
+
+/// Orders and alarms count as soon as they arrive: they name states themselves.
+void Neighbour::note_arrival(const AuraBatch& batch) {
+  note_marks(batch);
   orders_.insert(orders_.end(), batch.orders.begin(), batch.orders.end());
   alarms_.insert(alarms_.end(), batch.alarms.begin(), batch.alarms.end());
 }

@@ -31,6 +31,12 @@ class Neighbour {
   /// The word of this number that the neighbour has said in state `stamp`; null: it has not arrived.
   const AuraBatch* word(Step stamp, std::uint32_t number) const;
 
+  /// From now on has_gathered() is false until note_gathered() is called with the word of kGathered.
+  void await_gathering() { has_gathered_ = false; }
+  bool has_gathered() const { return has_gathered_; }
+  /// False when it is a copy.
+  bool note_gathered(const AuraBatch& word);
+
   /// Stamp up to which every batch has arrived; start - 1 at first.
   Step received() const { return received_; }
   /// Stamp of the newest batch that has taken effect; start - 1 at first.
@@ -66,12 +72,14 @@ class Neighbour {
 
  private:
   void note_arrival(const AuraBatch& batch);
+  void note_marks(const AuraBatch& batch);
   void apply(const AuraBatch& batch);
 
   RegionId id_;
   RegionId self_;
   PublishedAuras in_effect_, arrived_;
   bool alive_ = true;
+  bool has_gathered_ = true;
   Step received_;
   Step applied_;
   std::vector<AuraBatch> waiting_;  ///< batches not yet in effect, ascending stamp, a few at most

@@ -33,6 +33,7 @@ Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const
       hops_across_(hops_across(map, settings.neighbour_distance_m)),
       listening_(vicinity_, intake_, settings.aura.lookahead, settings.start, settings.related),
       introducer_(*aura_, vicinity_),
+      gathers_(settings.redo > 0),
       check_(*aura_, vicinity_, settings.start),
       standing_(hops_across_, settings.aura.lookahead) {
   if (settings.aura.redo) intake_.on_arrival([this](const Neighbour& neighbour) { check_.take(neighbour); });
@@ -128,7 +129,8 @@ const std::vector<Departure>& Protocol::observe(const Snapshot& snapshot) {
   departing_.clear();
   outbox_.aura.stamp = snapshot.step;
   projection_.follow(snapshot);
-  full_ = listening_.begin(snapshot.step) || snapshot.step == settings_.start;
+  const bool has_gathered = settings_.redo > 0 && snapshot.step == settings_.start + 1;
+  full_ = listening_.begin(snapshot.step) || snapshot.step == settings_.start || has_gathered;
   Progress::mark();
   matching_.look(snapshot, intake_.neighbours(), projection_.ghosts());
   Progress::mark();
@@ -141,7 +143,26 @@ const std::vector<Departure>& Protocol::observe(const Snapshot& snapshot) {
   return departing_;
 }
 
+/// The next batch is full, so it tells who has left.
+const std::vector<Departure>& Protocol::gather(const Snapshot& snapshot) {
+  gathers_ = false;
+  outbox_.clear();
+  departing_.clear();
+  intake_.take_start();
+  projection_.follow(snapshot);
+  matching_.look(snapshot, intake_.neighbours(), projection_.ghosts());
+  projection_.classify(snapshot, matching_);
+  decide(snapshot);
+  outbox_.aura = {};
+  sign(outbox_.aura);
+  outbox_.aura.stamp = snapshot.step;
+  outbox_.aura.word = kGathered;
+  outbox_.listeners = vicinity_.neighbours;
+  return departing_;
+}
+
 void Protocol::sign(AuraBatch& batch) const {
+  batch.word = 0;
   batch.source = vicinity_.self;
   batch.generation = settings_.generation;
   batch.redo = settings_.redo;
@@ -245,8 +266,9 @@ Step Protocol::confirmed() const { return before_alarms(confirmed_but_for_alarms
 Step Protocol::earliest_agreement() const { return outbox_.aura.stamp + 1 + round(); }
 
 /// Counts an order that arrived after its state as a violation, and executes it now. Late moves of statics do not count
-/// where states are computed again.
+/// where states are computed again, and neither does a redo, which always names a state of the past.
 void Protocol::apply_late(Order& order, Step n) {
+  if (std::holds_alternative<Redo>(order.action)) return;
   if (order.at_step >= n || (computes_again() && std::holds_alternative<MoveStatic>(order.action))) return;
   violations_.add({ViolationKind::kLatency, n, vicinity_.self, {}, double(n - order.at_step), 0});
   order.at_step = n;

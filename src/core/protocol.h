@@ -107,6 +107,14 @@ class Protocol {
   /// Looks at a state. Returns the clusters that have to leave; valid until the next call.
   const std::vector<Departure>& observe(const Snapshot& snapshot);
 
+  /// After a redo, in the state of the cut: true if gather() has not been called yet, and all neighbours have said
+  /// their part of this state.
+  bool may_gather() const { return gathers_ && intake_.knows_all_of_start(); }
+  /// Looks at the state of the cut once more, now that the others' bodies of this state are known. The clusters that it
+  /// returns take part in the next state at their new hosts. So a touch in the next state can still be prevented.
+  /// outbox() is a word then, complete after the last hand_over().
+  const std::vector<Departure>& gather(const Snapshot& snapshot);
+
   /// Numbers an order and publishes it with the next step. receive() returns it like orders of others. Only for the
   /// lead, which numbers all orders.
   const Order& announce(Order order) { return orders_.announce(std::move(order), outbox_.aura.stamp); }
@@ -219,6 +227,7 @@ class Protocol {
   Listening listening_;
   Introducer introducer_;
   bool alarms_given_up_ = false;
+  bool gathers_;       ///< a redo has just begun, and this node has not gathered yet
   bool full_ = false;  ///< a region listens to us for the first time, so the batch has to be full
   AlarmLog alarms_;
   StateCheck check_;

@@ -37,13 +37,14 @@ class Meter {
     sums_.assign(c.metrics.size(), 0);
   }
 
-  /// Takes in a region's bodies of a state. After a redo it replaces what it took in before.
-  void see(core::Step step, core::RegionId region, std::span<const core::BodyRecord> hosted,
-           std::span<const core::BodyRecord> departed) {
-    if (step > steps_ || step <= measured_until_) return;
-    std::vector<core::BodyRecord>& bodies = waiting_[step][region];
+  /// Takes in a region's bodies of the report's state. After a redo it replaces what it took in before.
+  void see(const node::StepReport& report, core::RegionId region, std::span<const core::BodyRecord> hosted) {
+    if (report.step > steps_ || report.step <= measured_until_) return;
+    std::vector<core::BodyRecord>& bodies = waiting_[report.step][region];
     bodies.assign(hosted.begin(), hosted.end());
-    bodies.insert(bodies.end(), departed.begin(), departed.end());
+    for (std::size_t i = 0; i < report.departed.size(); ++i) {
+      if (report.departures[i].stamp == report.step) bodies.push_back(report.departed[i]);
+    }
   }
 
   /// Measures the states up to `confirmed`, which no redo can change any more.
@@ -128,7 +129,7 @@ MeasuredRun run_case(const Case& c, const RunRules& rules, const core::RegionMap
     const VirtualCluster::Event event = cluster.next();
     cpu_s[core::value_of(event.region)] += thread_time_s() - before;
     note(cluster.node(core::value_of(event.region)).confirmed());
-    meter.see(event.report->step, event.region, cluster.records(core::value_of(event.region)), event.report->departed);
+    meter.see(*event.report, event.region, cluster.records(core::value_of(event.region)));
     meter.measure_until(std::min(cluster.confirmed(), cluster.slowest()));
   }
   for (std::size_t r = 0; r < cluster.size(); ++r) note(cluster.node(r).finish(run.steps + more));

@@ -10,11 +10,14 @@ namespace {
 
 /// Number of states whose messages are kept. Nodes wait for each other, so none is further behind.
 constexpr core::Step kStatesKept = 200;
+/// Number of redos whose messages are kept. Several redos may follow each other while a message is under way.
+constexpr std::uint32_t kRedosKept = 16;
 
 template <class Map>
 void forget_before(Map& kept, std::uint32_t redo, core::Step step) {
-  std::erase_if(
-      kept, [&](const auto& entry) { return std::get<0>(entry.first) + 1 < redo || std::get<1>(entry.first) < step; });
+  std::erase_if(kept, [&](const auto& entry) {
+    return std::get<0>(entry.first) + kRedosKept < redo || std::get<1>(entry.first) < step;
+  });
 }
 
 /// Adds the message to the inbox's list, or its refusal if it could not be decoded. `envelope`: what is known of it.
@@ -42,8 +45,8 @@ class WirePost::Endpoint : public transport::Transport {
     network_.take(arrived);
     for (const core::AuraBatch& envelope : arrived.auras) {
       const Kept& kept = post_.kept_.at(core::value_of(envelope.source));
-      arrive(coder_.aura(kept.auras.at({envelope.redo, envelope.stamp}), expected_), envelope, core::MessageKind::kAura,
-             inbox.auras, inbox);
+      arrive(coder_.aura(kept.auras.at({envelope.redo, envelope.stamp, envelope.word}), expected_), envelope,
+             core::MessageKind::kAura, inbox.auras, inbox);
     }
     for (const core::HandOff& envelope : arrived.hand_offs) {
       const Kept& kept = post_.kept_.at(core::value_of(envelope.source));
@@ -100,7 +103,8 @@ class WirePost::Endpoint : public transport::Transport {
     envelopes.aura.generation = batch.generation;
     envelopes.aura.redo = batch.redo;
     envelopes.aura.stamp = batch.stamp;
-    const Bytes& bytes = kept().auras[{batch.redo, batch.stamp}] = coder_.of(batch);
+    envelopes.aura.word = batch.word;
+    const Bytes& bytes = kept().auras[{batch.redo, batch.stamp, batch.word}] = coder_.of(batch);
     traffic_.aura_bytes += bytes.size();
     traffic_.aura_updates += batch.updates.size();
     return count(bytes.size(), copies);

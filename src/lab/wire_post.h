@@ -46,8 +46,8 @@ class WirePost {
  private:
   class Endpoint;
   using Bytes = std::vector<std::uint8_t>;
-  /// Keys of messages: redo and state, and for hand-offs also destination and number.
-  using AuraKey = std::tuple<std::uint32_t, core::Step>;
+  /// Keys of messages: redo and state, for batches also the word, and for hand-offs destination and number.
+  using AuraKey = std::tuple<std::uint32_t, core::Step, std::uint32_t>;
   using HandOffKey = std::tuple<std::uint32_t, core::Step, core::RegionId, std::uint64_t>;
   /// The last messages of one source. They are kept because the network may lose, repeat and delay envelopes.
   struct Kept {

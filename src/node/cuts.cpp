@@ -11,6 +11,8 @@ namespace {
 
 /// Number of older cuts that are kept for pairs that one redo does not bring together.
 constexpr std::size_t kOlderCuts = 4;
+/// So many redos in a row for the same pair go back farther each time.
+constexpr std::size_t kMostStubborn = 1 + kOlderCuts;
 
 constexpr std::size_t kMostCuts = 40;
 
@@ -40,8 +42,8 @@ void Cuts::note_spawn(const core::Order& order) {
 
 void Cuts::forget(core::Step confirmed, bool alarms_given_up) {
   // The state after a redo's cut may be the next one to cause a redo.
-  const core::Step needed = before(before(confirmed + 1, 0).step + 1, 0).step;
-  const core::Step oldest_needed = before(confirmed + 1, kOlderCuts).step;
+  const core::Step needed = before(before(confirmed + 1, 1).step + 1, 1).step;
+  const core::Step oldest_needed = before(confirmed + 1, kMostStubborn).step;
   std::erase_if(cuts_, [&](Cut& cut) {
     const bool stays =
         cut.step >= needed || cut.step == oldest_needed || (cut.step > oldest_needed && is_older_kind(cut));
@@ -53,13 +55,14 @@ void Cuts::forget(core::Step confirmed, bool alarms_given_up) {
   cuts_.pop_front();
 }
 
-/// The newest cut early enough to bring a pair that touched in state `touch` to one host, or `farther` cuts of the
-/// older kind before it.
+/// The newest cut early enough to gather a pair that touched in state `touch`. If `farther` is 1, the newest one early
+/// enough to pull it to one host. If it is more, so many cuts of the older kind before that.
 const Cut& Cuts::before(core::Step touch, std::size_t farther) const {
-  const core::Step wanted = touch - core::horizon::before_touch(lookahead_);
+  const core::Step wanted =
+      touch - (farther == 0 ? core::horizon::kBeforeTouch : core::horizon::before_pull(lookahead_));
   std::size_t at = 0;
   while (at + 1 < cuts_.size() && cuts_[at + 1].step <= wanted) ++at;
-  for (; farther > 0 && at > 0; --farther) {
+  for (; farther > 1 && at > 0; --farther) {
     do {
       --at;
     } while (at > 0 && !is_older_kind(cuts_[at]));
@@ -102,7 +105,7 @@ core::Redo Cuts::plan(std::span<const core::Alarm> alarms, std::vector<core::Tog
       known->until = std::max(known->until, until);
     }
   }
-  stubborn_ = std::min(farther, kOlderCuts);
+  stubborn_ = std::min(farther, kMostStubborn);
   const core::Step cut = before(first, stubborn_).step;
   std::erase_if(together, [cut](const core::TogetherPair& pair) { return pair.until < cut; });
   std::ranges::sort(together, {}, [](const core::TogetherPair& pair) { return std::pair(pair.a, pair.b); });

@@ -83,7 +83,9 @@ bool Node::ready() {
   take_mail();
   if (is_broken_) return false;
   order_redo();
-  return redo_is_due() || protocol_->ready(current_step() + 1);
+  if (redo_is_due()) return true;
+  if (protocol_->may_gather()) gather();
+  return protocol_->ready(current_step() + 1);
 }
 
 bool Node::ready_to_settle() {
@@ -130,6 +132,9 @@ void Node::compute_and_keep() {
 void Node::compute_step() {
   const core::Step n = current_step() + 1;
   clear_report();
+  report_.departures = std::exchange(gathered_.departures, {});
+  report_.departed = std::exchange(gathered_.departed, {});
+  report_.effects = std::exchange(gathered_.effects, {});
   report_.durations.transport_s = std::exchange(mail_s_, 0);
   const core::Changes* changes = nullptr;
   {
@@ -177,8 +182,11 @@ void Node::apply(const core::Changes& changes) {
       protocol_->accept(news);
       continue;
     }
-    cuts_.note_arrival(adoption);
-    saved_.note_arrival(adoption);
+    // The cut of the state in which a redo begins was taken before the nodes gathered.
+    if (setup_.protocol.redo == 0 || adoption.stamp > setup_.protocol.start) {
+      cuts_.note_arrival(adoption);
+      saved_.note_arrival(adoption);
+    }
     adopt(adoption, nth++);
   }
 }

@@ -60,6 +60,7 @@ class Node {
   const StepReport& start(core::WorldCut world, Recorded recorded = Recorded::kNo);
 
   /// Takes in the messages that have arrived. True when the next state may be computed.
+  /// After a redo, it also gathers once the others have said where their bodies are (Protocol::gather).
   bool ready();
 
   /// Computes the next state, or goes back to an earlier one where the run is to be computed again. Only when ready().
@@ -207,6 +208,7 @@ class Node {
   void forget_cuts();
   void order_redo();
   void put_back();
+  void gather();
   void hold();
   void release_held(core::Step until);
   void confirm_all();
@@ -263,6 +265,7 @@ class Node {
   bool is_observed_ = false;
   std::vector<core::Order> redos_;  ///< ordered and not carried out yet, in sequence
   std::uint64_t last_redo_ = 0;     ///< sequence of the newest of redos_ so far
+  StepReport gathered_;             ///< rows of those that gather() has sent away, for the next report
   bool is_changing_ = false;        ///< this node has ordered a change of the run; an order given now would be lost
   StaticOrders statics_;
   LateWords late_words_;

@@ -119,6 +119,7 @@ void Node::put_back() {
   release_held(redo.confirmed);
   saved_.note_whole(whole_by(from));
   clear_report();
+  gathered_ = {};
   report_.put_back_confirmed = redo.confirmed;
   report_.put_back_for_static = redo.is_for_static;
   cuts_.forget(redo.confirmed, false);  // so all nodes have the same cuts, which the next redo may need
@@ -154,6 +155,16 @@ void Node::put_back() {
   put_in(cut);
   note_effects_anew();
   begin_state(Recorded::kYes);
+}
+
+/// Sends away what another node has to host before the next state is computed.
+void Node::gather() {
+  std::swap(report_, gathered_);
+  report_ = {};
+  release(protocol_->gather(world_.snapshot()));
+  std::swap(report_, gathered_);
+  const Timed timed(mail_s_, setup_.clock);
+  transport_->send(protocol_->outbox());
 }
 
 /// Keeps a report until its state is confirmed. A redo may go back to before a confirmed state. Such states are

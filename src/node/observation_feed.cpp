@@ -73,7 +73,7 @@ void ObservationFeed::note(const StepReport& report, const std::deque<core::Hand
   for (std::size_t i = 0; i < report.departed.size(); ++i) {
     BodyState body = core::state_of(report.departed[i]);
     body.epoch = report.departures[i].epoch;
-    left_.insert_or_assign(body.id, Left{body, report.departures[i].destination, report.step});
+    left_.insert_or_assign(body.id, Left{body, report.departures[i].destination, report.departures[i].stamp});
     arrived_.erase(body.id);
   }
   // Entries are kept for longer than a message is under way, because nodes that are behind still refer to them.

@@ -91,7 +91,7 @@ struct StepReport {
   Effects effects;
   std::uint64_t unbearable = 0;  ///< number of setpoints refused because a body would have become too fast
   std::vector<HandOffRow> departures;
-  std::vector<core::BodyRecord> departed;  ///< the bodies of `departures` as they left, with old epochs
+  std::vector<core::BodyRecord> departed;  ///< the bodies of `departures` as they left, in the states of their stamps
   std::vector<core::BodyId> let_go;        ///< bodies dropped here because another node hosts them under a higher epoch
   std::vector<HandOffRow> arrivals;
   std::vector<MadeUp> made_up;  ///< filled only while somebody observes

@@ -86,6 +86,7 @@ TEST(WayBack, IsFarEnoughToBringTwoBodiesTogetherAtTheFirstTry) {
       const core::Scene scene = two_balls(touch);
       const Outcome apart = CheckedRun(scene, options).run(kRedoSteps);
       EXPECT_EQ(apart.redos, 1u) << "K = " << lookahead << ", touch in " << touch;
+      EXPECT_LE(apart.again, std::uint64_t(core::horizon::check(lookahead) + core::horizon::kBetweenCuts + 1));
       EXPECT_EQ(first_difference(apart, run_central(scene, options, kRedoSteps)), kRedoSteps + 1);
     }
   }

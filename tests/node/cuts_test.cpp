@@ -45,8 +45,8 @@ class CutsOfANode : public ::testing::Test {
 TEST_F(CutsOfANode, ARedoGoesBackFarEnoughToBringThePairTogether) {
   const Step touch = 200;
   const core::Redo redo = plan({alarm(touch)});
-  EXPECT_LE(redo.cut, touch - core::horizon::before_touch(kLookahead));
-  EXPECT_GT(redo.cut + kEvery, touch - core::horizon::before_touch(kLookahead)) << "and no farther";
+  EXPECT_LE(redo.cut, touch - core::horizon::kBeforeTouch);
+  EXPECT_GT(redo.cut + kEvery, touch - core::horizon::kBeforeTouch) << "and no farther";
   ASSERT_EQ(redo.pairs.size(), 1U);
   EXPECT_GE(redo.pairs[0].until, touch);
 }
@@ -61,13 +61,16 @@ TEST_F(CutsOfANode, TheEarliestAlarmDecidesAndAllPairsAreNamedInOrder) {
 TEST_F(CutsOfANode, APairThatARedoHasNotBroughtTogetherGoesBackFartherEachTime) {
   std::vector<core::TogetherPair> together;
   std::vector<Step> back;
-  for (int i = 0; i < 7; ++i) {
-    const core::Redo redo = plan({alarm(280)}, together);
+  const Step touch = 270 + core::horizon::kBeforeTouch;
+  for (int i = 0; i < 8; ++i) {
+    const core::Redo redo = plan({alarm(touch)}, together);
     together = redo.pairs;
     back.push_back(redo.cut);
   }
-  for (int i = 1; i <= 4; ++i) EXPECT_EQ(back[i], back[i - 1] - kEvery);
-  EXPECT_EQ(back[6], back[4]) << "four cuts at most";
+  EXPECT_EQ(back[0], 270) << "they gather there";
+  EXPECT_LE(back[1], touch - core::horizon::before_pull(kLookahead)) << "one pulls the other one";
+  for (int i = 1; i <= 5; ++i) EXPECT_EQ(back[i], back[i - 1] - kEvery);
+  EXPECT_EQ(back[7], back[5]) << "four older cuts at most";
 }
 
 TEST_F(CutsOfANode, AnAlarmAboutAStaticNamesNoPair) {
@@ -105,7 +108,7 @@ TEST_F(CutsOfANode, OfTheOnesBeforeAConfirmedStateOnlyAFewAreKept) {
   }
   // For a touch in the first state that is not confirmed, and for one in the state after the cut of that.
   const auto cut_before = [](Step touch) {
-    const Step wanted = touch - core::horizon::before_touch(kLookahead);
+    const Step wanted = touch - core::horizon::before_pull(kLookahead);
     return wanted - wanted % core::horizon::kBetweenCuts;
   };
   const Step needed = cut_before(cut_before(300 - 20 + 1) + 1);
