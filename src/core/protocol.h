@@ -127,17 +127,18 @@ class Protocol {
   /// Like earliest_effect(), for orders that add or move no body: before that state all nodes have received the order.
   Step earliest_agreement() const;
 
-  /// Call for each state that an adopted cluster, the `nth` of this step, has made up.
-  void note_made_up(Step step, std::uint32_t nth, std::span<const BodyRecord> bodies);
+  /// Call for each state that an adopted cluster has made up. `cluster`: a number that no other cluster has, also not
+  /// one that has joined in an earlier state or joins later.
+  void note_made_up(Step step, std::uint32_t cluster, std::span<const BodyRecord> bodies);
 
   // While the run stands in the state of the last observe(), and all that others have sent up to it has arrived
   // (core/standing.h)
   /// Has begin_to_stand() been called in this state?
   bool stands() const { return standing_.state() == outbox_.aura.stamp; }
   void begin_to_stand();
-  /// Call after begin_to_stand() for each state, up to the present one, of a cluster that joins later, the `nth` of
-  /// those.
-  void note_to_come(Step step, std::uint32_t nth, std::span<const BodyRecord> bodies);
+  /// Call after begin_to_stand() for each state, up to the present one, of a cluster that joins later. `cluster` as
+  /// in note_made_up().
+  void note_to_come(Step step, std::uint32_t cluster, std::span<const BodyRecord> bodies);
   /// The next word to send; null: there is none now. Precondition: stands(). Call again until it returns null.
   const Outbox* next_word();
   /// The newest state in which the run stood and which all nodes have checked, as far as this node knows; -1: none.
@@ -212,7 +213,7 @@ class Protocol {
   void check_as_it_stands();
   Step heard_of_all(Step patience) const;
   Step before_alarms(Step confirmed) const;
-  void note_lonely(Step step, std::uint32_t nth, std::span<const BodyRecord> bodies, std::vector<AuraRecord>& past);
+  void note_lonely(Step step, std::uint32_t cluster, std::span<const BodyRecord> bodies, std::vector<AuraRecord>& past);
 
   ProtocolSettings settings_;
   Vicinity vicinity_;

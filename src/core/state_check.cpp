@@ -141,10 +141,10 @@ void StateCheck::note_before(BodyId id, const Path& before, Step noted, Step now
   }
 }
 
-void StateCheck::take_made_up(const BodyState& body, Step step, std::uint32_t nth) {
+void StateCheck::take_made_up(const BodyState& body, Step step, std::uint32_t cluster) {
   if (step < checked_ || step <= whole_) return;
   state(step).others.push_back(
-      {body.id, kFirstLonely + nth, path_of(body, step, aura_.clearance()), body.birth <= step});
+      {body.id, kFirstLonely + cluster % kFirstLonely, path_of(body, step, aura_.clearance()), body.birth <= step});
 }
 
 void StateCheck::take_to_come(const Neighbour& neighbour, std::span<const AuraRecord> to_come) {

@@ -31,9 +31,9 @@ class StateCheck {
   /// Adds our bodies of a state, whether they were announced or not. A foreign body that left its path may have come to
   /// one that was not. The foreign one was announced, because it is outside of its region or near the border.
   void take_own(const Snapshot& snapshot, const InterestMatching& matching);
-  /// Adds a state that one of our bodies made up alone, as part of the `nth` cluster that joined. It shared no world
-  /// with other bodies.
-  void take_made_up(const BodyState& body, Step step, std::uint32_t nth);
+  /// Adds a state that one of our bodies made up alone, as part of a cluster. It shared no world with other clusters,
+  /// so each has a number of its own.
+  void take_made_up(const BodyState& body, Step step, std::uint32_t cluster);
 
   /// Adds states, up to the one in which the run stands, of bodies that join the neighbour later.
   void take_to_come(const Neighbour& neighbour, std::span<const AuraRecord> to_come);

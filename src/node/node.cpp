@@ -173,7 +173,6 @@ void Node::compute_state(core::Step n) {
 void Node::apply(const core::Changes& changes) {
   if (!changes.let_go.empty()) world_.release(changes.let_go);
   report_.let_go.insert(report_.let_go.end(), changes.let_go.begin(), changes.let_go.end());
-  std::uint32_t nth = 0;
   for (const core::Adoption& adoption : changes.adoptions) {
     if (!is_of_the_scene(adoption.cluster, scene())) {
       core::Inbox news;
@@ -187,19 +186,19 @@ void Node::apply(const core::Changes& changes) {
       cuts_.note_arrival(adoption);
       saved_.note_arrival(adoption);
     }
-    adopt(adoption, nth++);
+    adopt(adoption);
   }
 }
 
-/// Takes in a cluster, the `nth` of those that join for the next state. After the last state its stamp may be a later
-/// one; then it joins unchanged.
-void Node::adopt(const core::Adoption& adoption, std::uint32_t nth) {
+/// Takes in a cluster. After the last state its stamp may be a later one; then it joins unchanged.
+void Node::adopt(const core::Adoption& adoption) {
   world_.adopt(adoption.cluster, std::min(adoption.stamp, current_step()),
                [&](core::Step step, std::span<const core::BodyRecord> bodies) {
                  if (setup_.hash_states) report_.hash.push_back({step, physics::state_hash_sum(bodies)});
                  if (is_observed_) report_.made_up.push_back(made_up(step, bodies, adoption.cluster));
-                 protocol_->note_made_up(step, nth, bodies);
+                 protocol_->note_made_up(step, lonely_clusters_, bodies);
                });
+  ++lonely_clusters_;
   note_made_up_contacts();
   note_arrivals(adoption);
 }

@@ -35,10 +35,9 @@ bool Node::stand() {
 /// Notes the present and earlier states of bodies that join later. Neighbours need them to check these states.
 void Node::begin_to_stand() {
   protocol_->begin_to_stand();
-  std::uint32_t nth = 0;
   for (const MadeUp& state : foresee()) {
-    protocol_->note_to_come(state.step, nth, state.bodies);
-    if (state.step == current_step()) ++nth;  // the last state of a cluster
+    protocol_->note_to_come(state.step, lonely_clusters_, state.bodies);
+    if (state.step == current_step()) ++lonely_clusters_;  // the last state of a cluster
   }
 }
 
@@ -101,10 +100,12 @@ void Node::learn_of_redos() {
 }
 
 /// May this node carry out the next redo? Not before it has checked all states up to the cut, because none of them is
-/// checked again.
+/// checked again. And not before all clusters that left in the cut or earlier have joined, K states later at most:
+/// until then the cut does not have them.
 bool Node::redo_is_due() const {
   if (redos_.empty() || current_step() < redos_.front().at_step) return false;
-  return protocol_->checked() >= std::get<core::Redo>(redos_.front().action).cut;
+  const core::Step cut = std::get<core::Redo>(redos_.front().action).cut;
+  return current_step() >= cut + setup_.protocol.aura.lookahead && protocol_->checked() >= cut;
 }
 
 /// Goes back to the cut of the next redo. Messages under way belong to the time before it, and their receivers drop

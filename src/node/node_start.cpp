@@ -98,8 +98,7 @@ void Node::put_in(const Cut& part) {
   }
   watch_.put_back(part.collisions);
   to_be_born_ = part.to_be_born;
-  std::uint32_t nth = 0;
-  for (const core::Adoption& adoption : part.joining) adopt(adoption, nth++);
+  for (const core::Adoption& adoption : part.joining) adopt(adoption);
 }
 
 /// Publishes the state that has been put in. Its hash is reported unless the records have it already.

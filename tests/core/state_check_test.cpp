@@ -142,5 +142,19 @@ TEST_F(TheCheck, TakesABodyThatMadeUpAStateAloneForOneInAnotherWorld) {
   EXPECT_THAT(look(2), SizeIs(1));
 }
 
+TEST_F(TheCheck, TakesClustersThatMadeUpAStateForSeveralWorldsWheneverTheyJoin) {
+  BodyState one, other;
+  one.id = BodyId{4}, other.id = BodyId{5};
+  one.prototype = other.prototype = ball_;
+  one.pose.p_WB = {50, 0, 0}, other.pose.p_WB = {50.7, 0, 0};
+  look(0);
+  publish(0, {});
+  look(1);
+  for (const Step step : {0, 1}) check_.take_made_up(one, step, 0);
+  for (const Step step : {0, 1}) check_.take_made_up(other, step, 1);
+  publish(1, {});
+  EXPECT_THAT(look(2), SizeIs(1));
+}
+
 }  // namespace
 }  // namespace aurasim::core::testing
