@@ -21,6 +21,9 @@ enum class SoftPhase : std::uint8_t {
 };
 inline constexpr std::size_t kSoftPhases = 4;
 
+/// The bit of a phase in a set of phases.
+inline std::uint8_t bit_of(SoftPhase phase) { return static_cast<std::uint8_t>(1U << static_cast<unsigned>(phase)); }
+
 /// Where a body of the soft step is among the blocks. Of each phase, it names the only group that the body can be in.
 struct SoftPlace {
   core::Block block{0, 0};

@@ -136,9 +136,9 @@ class SoftShared final : public SoftExchange {
   /// The phase before which the mover of a body in a common contact of `phase` with another region is sent: the first
   /// after which the other region knows it until then.
   SoftPhase sent_before(SoftPhase phase, const Known& body, core::RegionId other) const;
-  /// Lists the movers of common contacts for which wanted(common) is true, by the phase before which they are sent.
-  template <class Wanted>
-  void order_rows(ByPhase<Rows>& rows, Wanted&& wanted) const;
+  /// Lists the movers of common contacts by the phase before which they are sent. `bouncing`: only those of contacts
+  /// that may bounce; null: all.
+  void order_rows(ByPhase<Rows>& rows, const SoftPatches* bouncing) const;
 
   Coupling coupling_;
   double block_m_;

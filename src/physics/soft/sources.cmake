@@ -14,6 +14,7 @@ set(soft_step_sources
   soft/patches.cpp
   soft/seam_parcels.cpp
   soft/shared.cpp
+  soft/shared_rows.cpp
   soft/step.cpp
   soft/threads.cpp
   soft/world.cpp)
