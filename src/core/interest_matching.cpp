@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "core/horizon.h"
+#include "core/keep_one_of_each.h"
 #include "core/progress.h"
 
 namespace aurasim::core {
@@ -199,9 +200,7 @@ void InterestMatching::pair_up() {
 
 /// Call once all marks are set.
 void InterestMatching::note_near_others() {
-  std::ranges::sort(marked_);
-  const auto twins = std::ranges::unique(marked_);
-  marked_.erase(twins.begin(), twins.end());
+  keep_one_of_each(marked_);
   near_others_.clear();
   std::ranges::set_union(own_.close(), marked_, std::back_inserter(near_others_));
 }

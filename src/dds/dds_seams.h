@@ -23,7 +23,7 @@ struct SeamSettings {
   std::function<bool(core::RegionId, const ProcessPrefix&)> is_node;
 };
 
-/// What the exchanges of one step took. In an exchange a region posts parcels to others, and then fetches theirs.
+/// Times of the exchanges of one step. In an exchange a region posts parcels to others, and then fetches theirs.
 struct ExchangeTimes {
   std::vector<double>
       seconds;  ///< of each exchange: posting, and waiting for parcels; without what is computed between

@@ -97,7 +97,7 @@ class DdsTransport final : public transport::Transport {
 
   /// Parcels in the middle of a step; null unless TransportSettings::coupled.
   core::SeamMail* seams();
-  /// What the exchanges of the last step took; null unless TransportSettings::coupled.
+  /// Times of the exchanges of the last step; null unless TransportSettings::coupled.
   const ExchangeTimes* exchange_times();
 
   const TransportCounters& counters() const;

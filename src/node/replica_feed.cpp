@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/keep_one_of_each.h"
+
 namespace aurasim::node {
 namespace {
 
@@ -73,9 +75,7 @@ const core::Replica& ReplicaFeed::compose_changes(const core::Snapshot& snapshot
   if (all_may_have_changed_) {
     for (const core::BodyState& body : snapshot.bodies) compose_change(body);
   } else {
-    std::ranges::sort(changed_);
-    const auto twins = std::ranges::unique(changed_);
-    changed_.erase(twins.begin(), twins.end());
+    core::keep_one_of_each(changed_);
     for (const core::BodyId id : changed_) compose_change(*core::find_body(snapshot.bodies, id));
   }
   all_may_have_changed_ = snapshot.number == 0;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/ids.h"
+#include "core/keep_one_of_each.h"
 #include "physics/body_table.h"
 
 namespace aurasim::physics {
@@ -55,9 +56,7 @@ class ChangedBodies {
   static constexpr std::size_t kFew = 256;
 
   void sort_out() {
-    std::ranges::sort(ids_);
-    const auto twins = std::ranges::unique(ids_);
-    ids_.erase(twins.begin(), twins.end());
+    core::keep_one_of_each(ids_);
     known_ = ids_.size();
   }
 

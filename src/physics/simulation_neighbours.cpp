@@ -12,6 +12,7 @@
 
 #include <LinearMath/btAabbUtil2.h>
 
+#include "core/keep_one_of_each.h"
 #include "physics/bounds.h"
 #include "physics/bullet_convert.h"
 #include "physics/halo.h"
@@ -179,9 +180,7 @@ void Simulation::meet_far() {
     }
     post(host, answer);
   }
-  std::ranges::sort(expected);
-  const auto twins = std::ranges::unique(expected);
-  expected.erase(twins.begin(), twins.end());
+  core::keep_one_of_each(expected);
   std::vector<Visit> guests;
   for (const core::RegionId peer : expected) {
     const Halo answer = fetch(peer);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/keep_one_of_each.h"
 #include "core/static_path.h"
 #include "physics/awaken.h"
 #include "physics/bounds.h"
@@ -88,9 +89,7 @@ void Simulation::wake_near(std::span<const Bounds> changing) {
 void Simulation::find_near(std::span<const Bounds> places) {
   near_.clear();
   for (const Bounds& bounds : places) world_.find_near(bounds, near_);
-  std::ranges::sort(near_);
-  const auto twins = std::ranges::unique(near_);
-  near_.erase(twins.begin(), twins.end());
+  core::keep_one_of_each(near_);
 }
 
 /// Notes bodies near a place for the next snapshot.

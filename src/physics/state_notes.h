@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/body_state.h"
+#include "core/keep_one_of_each.h"
 #include "physics/changed_bodies.h"
 
 namespace aurasim::physics {
@@ -78,9 +79,7 @@ struct StateNotes {
     known_pairs = 0;
   }
   void sort_pairs() {
-    std::ranges::sort(pairs);
-    const auto twins = std::ranges::unique(pairs);
-    pairs.erase(twins.begin(), twins.end());
+    core::keep_one_of_each(pairs);
     known_pairs = pairs.size();
   }
 };

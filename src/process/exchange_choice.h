@@ -14,7 +14,7 @@
 
 namespace aurasim::process {
 
-/// What the lead has measured of the link to one region.
+/// The link between the lead and one region, as measured.
 struct RoundTrip {
   core::RegionId region{};
   double median_s = 0;  ///< infinite if most questions got no answer
@@ -68,7 +68,7 @@ std::string words_of_choice(config::Exchange chosen, const RoundTrip& slowest, d
 /// The same where `auto` in the launch file can mean only one of the two.
 std::string words_of_only_choice(const config::Launch& launch);
 
-/// What helps a run with auras whose bodies are one cluster: text for users. `round_trip_ms`: as in the status.
+/// Text for users: the keys that help a run with auras whose bodies are one cluster. `round_trip_ms`: as in the status.
 std::string remedy_for_heaps(const config::Launch& launch, double round_trip_ms, bool is_one_host);
 
 /// The exchange that live nodes of the run have chosen already, if any has.

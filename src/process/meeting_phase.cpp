@@ -70,12 +70,7 @@ bool MeetingPhase::agree_on_exchange() {
     run_.take_exchange_of_others();
     log_early_deaths();
     note_meeting(patience, waiting);
-    if (patience.is_over(Clock::now())) {
-      run_.refuse(fmt::format("exchange: auto is not settled in {} s, and for {} s there was nothing new; {}",
-                              whole_seconds(Clock::now() - began), whole_seconds(patience.waited(Clock::now())),
-                              who_does_not_wait(run_.control().statuses(), run_.launch.regions.size())));
-      return false;
-    }
+    if (gives_up("exchange: auto is not settled", patience, began)) return false;
     run_.publish();
     run_.control().wait(1ms);
   }
@@ -127,6 +122,16 @@ bool MeetingPhase::meet_neighbours() {
   return true;
 }
 
+/// Refuses to run if patience with the other nodes is over. `what`: text that says what they have not done.
+bool MeetingPhase::gives_up(std::string_view what, const Patience& patience, Clock::time_point began) {
+  const auto now = Clock::now();
+  if (!patience.is_over(now)) return false;
+  run_.refuse(fmt::format("{} in {} s, and for {} s there was nothing new; {}", what, whole_seconds(now - began),
+                          whole_seconds(patience.waited(now)),
+                          who_does_not_wait(run_.control().statuses(), run_.launch.regions.size())));
+  return true;
+}
+
 bool MeetingPhase::wait_for_start() {
   run_.publish();
   const auto began = Clock::now();
@@ -135,12 +140,7 @@ bool MeetingPhase::wait_for_start() {
   while (!run_.start.start()) {
     if (host::stop_requested() || another_run_is_here()) return false;
     note_meeting(patience, waiting);
-    if (patience.is_over(Clock::now())) {
-      run_.refuse(fmt::format("the run has not started in {} s, and for {} s there was nothing new; {}",
-                              whole_seconds(Clock::now() - began), whole_seconds(patience.waited(Clock::now())),
-                              who_does_not_wait(run_.control().statuses(), run_.launch.regions.size())));
-      return false;
-    }
+    if (gives_up("the run has not started", patience, began)) return false;
     log_early_deaths();
     run_.publish();
     run_.start_when_all_wait();

@@ -2,6 +2,9 @@
 // of the run have found each other, and until the run starts. The decisions are in meeting.h.
 #pragma once
 
+#include <chrono>
+#include <string_view>
+
 #include "dds/round_trips.h"
 #include "host/long_work.h"
 #include "process/command_executor.h"
@@ -30,6 +33,7 @@ class MeetingPhase {
   bool receives_from_others();
   void note_meeting(Patience& patience, host::LongWork& waiting);
   void log_early_deaths();
+  bool gives_up(std::string_view what, const Patience& patience, std::chrono::steady_clock::time_point began);
 
   NodeRuntime& run_;
   CommandExecutor& executor_;

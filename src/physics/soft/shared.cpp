@@ -6,6 +6,7 @@
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include "core/keep_one_of_each.h"
 #include "physics/bullet_convert.h"
 #include "physics/moving_body.h"
 #include "physics/soft/contacts.h"
@@ -50,19 +51,14 @@ void SoftShared::tell_stirs(SoftIslands& islands) {
     if (islands.is_sleepy(b)) ours[host].emplace_back(place_of(*one).id, a);
     if (islands.is_sleepy(a)) theirs[host].emplace_back(place_of(*other).id, b);
   });
-  const auto sort_out = [](auto& list) {
-    std::ranges::sort(list);
-    const auto twins = std::ranges::unique(list);
-    list.erase(twins.begin(), twins.end());
-  };
   for (auto& [host, bodies] : ours) {
-    sort_out(bodies);
+    core::keep_one_of_each(bodies);
     parcel_.clear();
     for (const auto& [id, slot] : bodies) parcel_.put(static_cast<std::uint8_t>(islands.stirs(slot)));
     coupling_.mail->post(host, parcel_.bytes());
   }
   for (auto& [host, bodies] : theirs) {
-    sort_out(bodies);
+    core::keep_one_of_each(bodies);
     ParcelReader parcel(coupling_.mail->fetch(host));
     for (const auto& [id, slot] : bodies) {
       if (parcel.take<std::uint8_t>() != 0) islands.note_stirs(slot);
@@ -143,9 +139,7 @@ bool SoftShared::meet(std::span<btRigidBody* const> bodies, SoftContacts& contac
     }
   }
   for (auto& [peer, what] : told) {
-    std::ranges::sort(what.bodies, {}, [](const btRigidBody* body) { return body->getUserIndex(); });
-    const auto twins = std::ranges::unique(what.bodies);
-    what.bodies.erase(twins.begin(), twins.end());
+    core::keep_one_of_each(what.bodies, [](const btRigidBody* body) { return body->getUserIndex(); });
     parcel_.clear();
     parcel_.put(static_cast<std::uint32_t>(what.bodies.size()));
     for (const btRigidBody* body : what.bodies) {

@@ -130,7 +130,7 @@ class SoftShared final : public SoftExchange {
   void settle(SoftPhase phase);
   std::vector<Chain> find_chains(std::span<Waiting> waiting) const;
   void note_corners(std::vector<Chain>&& chains);
-  /// What the host of a body tells another region: the phases, as bits, in which the other may not solve all contacts
+  /// The host of a body tells another region this: the phases, as bits, in which the other may not solve all contacts
   /// of the body.
   static std::uint8_t elsewhere(const Touched& touched, core::RegionId other);
   /// The phase before which the mover of a body in a common contact of `phase` with another region is sent: the first

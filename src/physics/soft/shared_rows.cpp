@@ -1,6 +1,7 @@
 // Which movers coupled regions exchange before which phase.
 #include <algorithm>
 
+#include "core/keep_one_of_each.h"
 #include "physics/soft/seam_parcels.h"
 #include "physics/soft/shared.h"
 
@@ -49,9 +50,7 @@ void SoftShared::order_rows(ByPhase<Rows>& rows, const SoftPatches* bouncing) co
   for (auto& of_phase : rows) {
     for (auto& [host, with] : of_phase) {
       for (std::vector<std::int32_t>* const movers : {&with.ours, &with.theirs}) {
-        std::ranges::sort(*movers, {}, [this](std::int32_t mover) { return known(mover).id; });
-        const auto twins = std::ranges::unique(*movers);
-        movers->erase(twins.begin(), twins.end());
+        core::keep_one_of_each(*movers, [this](std::int32_t mover) { return known(mover).id; });
       }
     }
   }
