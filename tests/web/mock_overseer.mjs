@@ -20,8 +20,8 @@ const SCENES = ["corner_stacks", "columns_rain", "falling_piles", "tower"];
 const LAST_REPLAY_STEP = 3600;
 
 export class MockOverseer {
-  constructor({ port = 0, bodies = 300, nodes = 4, token = "", viewToken = "", replay = false, dist = DIST } = {}) {
-    Object.assign(this, { port, token, viewToken, replay, dist });
+  constructor({ port = 0, bodies = 300, nodes = 4, token = "", viewToken = "", replay = false, exchange = "aura", dist = DIST } = {}) {
+    Object.assign(this, { port, token, viewToken, replay, exchange, dist });
     this.late = 0; // collisions that region 1 says were late
     this.world = new MockWorld({ bodies, nodes });
     this.commands = []; // everything that clients sent, for tests
@@ -163,7 +163,7 @@ export class MockOverseer {
         hand_offs_out: this.world.handOffs[region], hand_offs_in: this.world.handOffs[region], hand_offs_per_s: Math.max(0, wobble(6, region)),
         violations: { speed: 0, latency: 0, frame: region === 1 ? 3 : 0, promise: 0, span: 0 },
         late: region === 1 ? this.late : 0, missed: 0, frame_ms: times, physics_ms: times,
-        protocol_ms: times, transport_ms: times, real_time_factor: this.state === "running" ? this.rate : 0, largest_cluster: 48, lookahead: 2, text: "",
+        protocol_ms: times, transport_ms: times, exchange: this.exchange, exchange_ms: this.exchange === "coupled" ? { p50: 0.06, p99: 0.2, max: 0.4 } : {}, real_time_factor: this.state === "running" ? this.rate : 0, largest_cluster: 48, lookahead: 2, text: "",
         listens_to: [{ region: (region + 1) % 4, since: 0 }, { region: (region + 2) % 4, since: 120, introduced_by: (region + 1) % 4 }] };
     });
   }

@@ -69,6 +69,15 @@ test("EveryBodyIsThereWithinTwoSeconds", async () => {
   noErrors();
 });
 
+test("CoupledBordersAreShown", mockOnly, async () => {
+  await open({ exchange: "coupled" });
+  await until(() => window.aurasim.coupledBorders === true);
+  await until(() => document.getElementById("nodes").textContent.includes("coupled: 0.06 ms an exchange, p99 0.20 ms"));
+  mock.exchange = "aura"; // the next run
+  await until(() => window.aurasim.coupledBorders === false);
+  noErrors();
+});
+
 test("TheColourOfABodyIsThatOfItsHost", async () => {
   await open();
   await haveBodies(1);

@@ -48,7 +48,7 @@ tools = picture && new Tools({ view: picture.view, rig: picture.rig, instances: 
   toolbox, live: isLive, select: (what) => selection.choose(what) });
 const input = picture && new Input(canvas, { rig: picture.rig, tools, tool: () => toolbox.tool });
 const editor = picture && new RegionEditor({ rig: picture.rig, origin: () => picture.view.origin,
-  nodes: () => status?.nodes?.length ?? 0, onclose: () => canvas.focus(),
+  nodes: () => status?.nodes?.length ?? 0, coupled: () => picture.walls.coupled, onclose: () => canvas.focus(),
   apply: (boxes) => commands.send({ kind: "regions", boxes }) });
 
 function openPicture() {
@@ -123,6 +123,7 @@ function onStatus(message) {
   status = message;
   topBar.showRun(message.state, message.rate, message.step, hello?.step_s ?? 1 / 60);
   nodes.show(message.nodes ?? [], hello?.step_s ?? 1 / 60);
+  if (picture) picture.walls.coupled = (message.nodes ?? []).some(({ exchange }) => exchange === "coupled");
   if (hello?.mode === "live") transport.showRunning(message.state === "running" || message.state === "starting");
   transport.showRate(message.rate);
   selection.refresh();
@@ -341,6 +342,7 @@ window.aurasim = Object.freeze({
   get status() { return status; },
   get scene() { return scene; },
   get map() { return map; },
+  get coupledBorders() { return picture?.walls.coupled ?? null; },
   hostColour: (host) => colourOfHost(host),
   colourOf: (id) => (world.slotOfId.has(id) ? picture?.instances.drawnColour(world.slotOfId.get(id)) ?? null : null),
   pixelOf: (id) => (world.slotOfId.has(id) ? picture?.pixelOf(world.slotOfId.get(id)) ?? null : null),

@@ -47,7 +47,8 @@ const ABOUT_LISTENING = "Regions whose nodes and this one hear each other. Those
   "were introduced by a third, because bodies came near.";
 
 const ABOUT_EXCHANGE = "How bodies of two regions touch. Aura: one node hosts both of them in time. Coupled: their nodes solve the " +
-  "contact together, with several exchanges in each step. The times are those of the slowest node in the last second.";
+  "contact together, with several exchanges in each step, and their borders are drawn dashed. The times are those of the slowest " +
+  "node in the last second.";
 
 /** How bodies of two regions touch, and what an exchange of coupled regions takes. */
 function exchangeOf(nodes) {

@@ -9,7 +9,7 @@ const SNAP = 0.5; // m
 
 export class RegionEditor {
   /**
-   * @param {{rig: import("./camera.js").CameraRig, origin: () => number[], nodes: () => number,
+   * @param {{rig: import("./camera.js").CameraRig, origin: () => number[], nodes: () => number, coupled: () => boolean,
    *   apply: (boxes: (number | null)[][]) => Promise<{ok: boolean}>, onclose: () => void}} app
    */
   constructor(app) {
@@ -243,10 +243,12 @@ export class RegionEditor {
     const [[ax, ay], [bx, by]] = ends.map(([x, y]) => this.#toPixels(x, y));
     pen.strokeStyle = lit ? "#ffffff" : "rgba(190,210,245,.75)";
     pen.lineWidth = lit ? 3 : 1.6;
+    pen.setLineDash(this.app.coupled() ? [9, 7] : []);
     pen.beginPath();
     pen.moveTo(ax, ay);
     pen.lineTo(bx, by);
     pen.stroke();
+    pen.setLineDash([]);
     if (!this.held?.border || !lit) return;
     pen.fillStyle = "#ffffff";
     pen.font = "600 13px system-ui, sans-serif";

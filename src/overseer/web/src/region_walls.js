@@ -6,23 +6,31 @@ import { boxesOfMap, bordersOf, extentOf } from "./region_maths.js";
 const WALL_HEIGHT = 7; // m
 const TINT_HEIGHT = 0.012; // above the ground, so that both can be told apart
 
+const DASH = 1.2; // m of wall and m of gap on a coupled border
+
+/** One material for all walls. On a coupled border the wall has gaps. */
 const wallMaterial = new THREE.ShaderMaterial({
   transparent: true, depthWrite: false, side: THREE.DoubleSide, fog: false,
-  uniforms: { colour: { value: new THREE.Color("#9db8e8") } },
+  uniforms: { colour: { value: new THREE.Color("#9db8e8") }, dash: { value: 0 } },
   vertexShader: /* glsl */ `
     varying float vUp;
+    varying float vAlong;
     varying float vFar;
     void main() {
       vUp = uv.y;
+      vAlong = position.x;
       vec4 seen = modelViewMatrix * vec4(position, 1.0);
       vFar = -seen.z;
       gl_Position = projectionMatrix * seen;
     }`,
   fragmentShader: /* glsl */ `
     varying float vUp;
+    varying float vAlong;
     varying float vFar;
     uniform vec3 colour;
+    uniform float dash;
     void main() {
+      if (dash > 0.0 && fract(vAlong / (2.0 * dash)) > 0.5) discard;
       float glow = 0.20 * pow(1.0 - vUp, 2.2) + 0.5 * smoothstep(0.035, 0.0, vUp);
       gl_FragColor = vec4(colour, glow * (1.0 - smoothstep(150.0, 700.0, vFar)));
       #include <colorspace_fragment>
@@ -54,6 +62,15 @@ export class RegionWalls {
       const [x0, y0, x1, y1] = [clip(box[0], 0), clip(box[1], 1), clip(box[2], 0), clip(box[3], 1)];
       if (x1 > x0 && y1 > y0) this.#addRegion(ids[i], x0, y0, x1, y1, boxes.length > 1, origin);
     });
+  }
+
+  /** @param {boolean} coupled  the nodes on both sides of a border solve contacts together */
+  set coupled(coupled) {
+    wallMaterial.uniforms.dash.value = coupled ? DASH : 0;
+  }
+
+  get coupled() {
+    return wallMaterial.uniforms.dash.value > 0;
   }
 
   #addWall(border, clip, origin) {
