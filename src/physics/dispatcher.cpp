@@ -1,6 +1,7 @@
 #include "physics/dispatcher.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
@@ -9,6 +10,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 #include <LinearMath/btAabbUtil2.h>
+#include <LinearMath/btPoolAllocator.h>
 
 #include "physics/corrected_result.h"
 #include "physics/inner_edges.h"
@@ -16,6 +18,8 @@
 
 namespace aurasim::physics {
 namespace {
+
+constexpr std::size_t kAlignment = 16;  // as Bullet's own pools have it
 
 bool bounds_overlap(const btBroadphaseProxy& a, const btBroadphaseProxy& b) {
   return TestAabbAgainstAabb2(a.m_aabbMin, a.m_aabbMax, b.m_aabbMin, b.m_aabbMax);
@@ -75,7 +79,8 @@ Dispatcher::Dispatcher(btCollisionConfiguration& configuration, const InnerEdges
       inner_edges_(inner_edges),
       hull_contacts_(
           *configuration.getCollisionAlgorithmCreateFunc(CONVEX_HULL_SHAPE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE),
-          kContactMargin) {
+          kContactMargin),
+      algorithm_bytes_(static_cast<std::size_t>(configuration.getCollisionAlgorithmPool()->getElementSize())) {
   setNearCallback(near_callback);
   registerCollisionCreateFunc(
       COMPOUND_SHAPE_PROXYTYPE, COMPOUND_SHAPE_PROXYTYPE,
@@ -105,34 +110,48 @@ bool Dispatcher::find_contacts(btBroadphasePair& pair, const btDispatcherInfo& i
 std::unique_lock<std::mutex> Dispatcher::hold_pools() {
   constexpr int kTries = 200;
   for (int i = 0; i < kTries; ++i) {
-    std::unique_lock<std::mutex> lock(pools_, std::try_to_lock);
+    std::unique_lock<std::mutex> lock(pools_mutex_, std::try_to_lock);
     if (lock.owns_lock()) return lock;
     soft::pause();
   }
-  return std::unique_lock<std::mutex>(pools_);
+  return std::unique_lock<std::mutex>(pools_mutex_);
 }
 
 btPersistentManifold* Dispatcher::getNewManifold(const btCollisionObject* body0, const btCollisionObject* body1) {
+  const auto threshold_of = [](const btCollisionObject& body) {
+    return body.getCollisionShape()->getContactBreakingThreshold(gContactBreakingThreshold);
+  };
+  const btScalar breaking =
+      std::min({threshold_of(*body0), threshold_of(*body1), static_cast<btScalar>(kContactMargin)});
+  const btScalar processing = std::min(body0->getContactProcessingThreshold(), body1->getContactProcessingThreshold());
   const std::unique_lock<std::mutex> lock = hold_pools();
-  btPersistentManifold* const manifold = btCollisionDispatcher::getNewManifold(body0, body1);
-  const btScalar limit = static_cast<btScalar>(kContactMargin);
-  manifold->setContactBreakingThreshold(std::min(manifold->getContactBreakingThreshold(), limit));
+  void* const memory = pools_.allocate(sizeof(btPersistentManifold), kAlignment);
+  auto* const manifold = new (memory) btPersistentManifold(body0, body1, 0, breaking, processing);
+  manifold->m_index1a = m_manifoldsPtr.size();
+  m_manifoldsPtr.push_back(manifold);
   return manifold;
 }
 
 void Dispatcher::releaseManifold(btPersistentManifold* manifold) {
   const std::unique_lock<std::mutex> lock = hold_pools();
-  btCollisionDispatcher::releaseManifold(manifold);
+  clearManifold(manifold);
+  const int place = manifold->m_index1a;
+  m_manifoldsPtr.swap(place, m_manifoldsPtr.size() - 1);
+  m_manifoldsPtr[place]->m_index1a = place;
+  m_manifoldsPtr.pop_back();
+  manifold->~btPersistentManifold();
+  pools_.deallocate(manifold, sizeof(btPersistentManifold), kAlignment);
 }
 
-void* Dispatcher::allocateCollisionAlgorithm(int bytes) {
+void* Dispatcher::allocateCollisionAlgorithm([[maybe_unused]] int bytes) {
+  assert(static_cast<std::size_t>(bytes) <= algorithm_bytes_);
   const std::unique_lock<std::mutex> lock = hold_pools();
-  return btCollisionDispatcher::allocateCollisionAlgorithm(bytes);
+  return pools_.allocate(algorithm_bytes_, kAlignment);
 }
 
 void Dispatcher::freeCollisionAlgorithm(void* memory) {
   const std::unique_lock<std::mutex> lock = hold_pools();
-  btCollisionDispatcher::freeCollisionAlgorithm(memory);
+  pools_.deallocate(memory, algorithm_bytes_, kAlignment);
 }
 
 }  // namespace aurasim::physics

@@ -59,6 +59,13 @@ void make_algorithm(btBroadphasePair& pair, btDispatcher& dispatcher) {
   pair.m_algorithm = dispatcher.findAlgorithm(&wrap0, &wrap1, nullptr, BT_CONTACT_POINT_ALGORITHMS);
 }
 
+/// The dispatcher has pools of its own.
+btDefaultCollisionConstructionInfo without_pools() {
+  btDefaultCollisionConstructionInfo info;
+  info.m_defaultMaxPersistentManifoldPoolSize = info.m_defaultMaxCollisionAlgorithmPoolSize = 1;
+  return info;
+}
+
 }  // namespace
 
 struct DynamicsWorld::Bullet {
@@ -71,7 +78,7 @@ struct DynamicsWorld::Bullet {
         sums_itself(settings.looks_once()) {}
 
   soft::Team team;
-  btDefaultCollisionConfiguration configuration;
+  btDefaultCollisionConfiguration configuration{without_pools()};
   InnerEdges inner_edges;
   Dispatcher dispatcher{configuration, inner_edges};
   ContactPairs pairs;
