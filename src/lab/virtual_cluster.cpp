@@ -97,7 +97,8 @@ std::string VirtualCluster::who_waits() const {
     text += " region " + std::to_string(core::value_of(member.node->region())) + " for what state " +
             std::to_string(next) + " needs of";
     for (const core::RegionId region : member.node->protocol().missing(next)) {
-      text += " " + std::to_string(core::value_of(region));
+      text += ' ';
+      text += std::to_string(core::value_of(region));
     }
     text += ";";
   }

@@ -87,6 +87,7 @@ class WirePost::Endpoint : public transport::Transport {
   /// Bytes that `copies` of a message put on the link.
   std::size_t count(std::size_t bytes, std::size_t copies) {
     traffic_.link_bytes += copies * bytes;
+    traffic_.messages += copies;
     traffic_.datagrams += copies * ((bytes + kDatagramBytes - 1) / kDatagramBytes);
     return copies * bytes;
   }

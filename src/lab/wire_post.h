@@ -24,6 +24,7 @@ struct Traffic {
   std::uint64_t handed_over = 0;  ///< bodies
   std::uint64_t hand_off_bytes = 0;
   std::uint64_t link_bytes = 0;  ///< bytes of all copies of all messages
+  std::uint64_t messages = 0;    ///< copies of all messages
   std::uint64_t datagrams = 0;   ///< datagrams of all copies, each of at most WirePost::kDatagramBytes
 };
 

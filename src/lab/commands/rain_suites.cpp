@@ -1,4 +1,4 @@
-// The suites scalability (virtual time) and scalability_clock (processes over DDS by the wall clock).
+// The suites scalability and many_nodes (virtual time), and scalability_clock (processes over DDS by the wall clock).
 #include "lab/commands/rain_suites.h"
 
 #include <algorithm>
@@ -13,6 +13,7 @@
 #include "config/shipped_files.h"
 #include "lab/commands/rain_processes.h"
 #include "lab/scale/fit.h"
+#include "lab/scale/many_nodes.h"
 #include "lab/scale/message_sizes.h"
 #include "lab/scale/rain_summary.h"
 #include "lab/scale/scalability.h"
@@ -69,6 +70,18 @@ std::vector<Figure> traffic(const Rain& rain, const RainFigures& f) {
           {"bytes per aura message", "B", per(f.aura_bytes, static_cast<double>(f.aura_updates))},
           {"bytes per body handed over", "B", per(f.hand_off_bytes, static_cast<double>(f.departures))},
           {"time taken over simulated", "1", f.last.slow_down}};
+}
+
+std::vector<Figure> figures(const NodeCosts& costs) {
+  return {{"messages", "1", costs.messages},
+          {"bytes", "B", costs.bytes},
+          {"physics", "us", costs.physics_us},
+          {"protocol", "us", costs.protocol_us},
+          {"transport", "us", costs.transport_us},
+          {"memory of a node", "kB", costs.memory_kB},
+          {"bodies of a node", "1", costs.bodies},
+          {"hand-offs a second", "1", costs.hand_offs},
+          {"redos", "1", static_cast<double>(costs.redos)}};
 }
 
 /// The case of a run, without its repeat. '/' divides the parts of a case, so units are in words.
@@ -203,12 +216,13 @@ void add_requirements(SuiteResults& results) {
   add_targets(results, targets);
 }
 
+RainPlace rain_place() {
+  return {rain_launch_file(),
+          [](const config::Launch& launch, core::RegionId region) { return setup::node_setup(launch, region, 0); }};
+}
+
 SuiteResults run_scalability(const SuitePlan& wanted, const Progress& progress) {
-  RainPlace place;
-  place.launch_file = rain_launch_file();
-  place.setup_of = [](const config::Launch& launch, core::RegionId region) {
-    return setup::node_setup(launch, region, 0);
-  };
+  const RainPlace place = rain_place();
   SuiteResults results;
   const std::vector<Part> parts = parts_of(wanted);
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -228,6 +242,33 @@ std::vector<std::string> scalability_parts() {
   std::vector<std::string> parts = scalability_series();
   for (const std::string& series : bandwidth_series()) parts.push_back(series);
   return parts;
+}
+
+/// A grid of so many nodes on a side. A quick run has the smallest.
+const std::vector<std::size_t> kSides = {3, 8, 16, 32};
+
+SuiteResults run_many_nodes(const SuitePlan& wanted, const Progress& progress) {
+  const RainPlace place = rain_place();
+  SuiteResults results;
+  std::map<std::size_t, NodeCosts> all;
+  for (std::size_t i = 0; i < kSides.size(); ++i) {
+    ManyNodes many;
+    many.side = kSides[i];
+    if (!wanted.is_full() && many.side > 8) break;
+    const auto shown = [&](double share) {
+      return progress((static_cast<double>(i) + share) / static_cast<double>(kSides.size()));
+    };
+    const std::optional<NodeCosts> costs = measure_many_nodes(many, place, shown);
+    if (!costs) return results;
+    const std::string what = fmt::format("grid/{} nodes", many.nodes());
+    for (const Figure& figure : figures(*costs))
+      results.rows.push_back({what, figure.metric, figure.value, figure.unit});
+    all[many.nodes()] = *costs;
+  }
+  if (!wanted.is_full()) return results;
+  add_targets(results, {{"messages of a node and step, 1024 nodes over 64", all[1024].messages / all[64].messages, 1.2},
+                        {"bytes of a node and step, 1024 nodes over 64", all[1024].bytes / all[64].bytes, 1.2}});
+  return results;
 }
 
 /// One and two nodes. A quick run has one repeat with K = 1.
@@ -262,6 +303,8 @@ SuiteResults run_scalability_clock(const SuitePlan& wanted, const Progress& prog
 std::vector<Suite> rain_suites() {
   return {{"scalability", "rain on 1 to 10 nodes, CPU time in virtual time (docs/speed.md)", run_scalability,
            scalability_parts},
+          {"many_nodes", "9 to 1,024 nodes of a world that grows with them, in virtual time (docs/speed.md)",
+           run_many_nodes, [] { return std::vector<std::string>(); }},
           {"scalability_clock", "rain on one and two real nodes, by the wall clock (docs/speed.md)",
            run_scalability_clock, [] { return std::vector<std::string>(); }}};
 }

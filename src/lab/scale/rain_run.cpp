@@ -51,6 +51,8 @@ StepLoad load_of(const node::StepReport& report, const Counted& before, const Co
   return load;
 }
 
+}  // namespace
+
 ClusterRules rules_of(const Rain& rain, const config::Launch& launch, const RainPlace& place) {
   ClusterRules rules = launch_rules(launch, place.setup_of);
   rules.clock = node::PhaseClock::kThreadCpu;
@@ -59,8 +61,6 @@ ClusterRules rules_of(const Rain& rain, const config::Launch& launch, const Rain
   rules.bandwidth_B_s = rain.bandwidth_B_s > 0 ? rain.bandwidth_B_s : kUnlimited_B_s;
   return rules;
 }
-
-}  // namespace
 
 std::optional<std::vector<Window>> run_rain(const Rain& rain, const RainPlace& place,
                                             const std::function<void(double)>& stepped, const std::atomic<bool>& stop) {

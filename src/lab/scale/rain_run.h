@@ -20,6 +20,9 @@ struct RainPlace {
   SetupOf setup_of;
 };
 
+/// Rules of nodes whose frames are never late, and whose work is measured as CPU time.
+ClusterRules rules_of(const Rain& rain, const config::Launch& launch, const RainPlace& place);
+
 /// Runs the rain and returns its windows. Nothing when `stop` became true. `stepped(share)` is called now and then with
 /// the share of the run that is done, 0 to 1.
 std::optional<std::vector<Window>> run_rain(const Rain& rain, const RainPlace& place,
