@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <deque>
 #include <limits>
+#include <optional>
+#include <variant>
 
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h>
@@ -12,11 +14,13 @@
 
 #include "physics/bullet_convert.h"
 #include "physics/shapes.h"
+#include "physics/spine.h"
 
 namespace aurasim::physics {
 namespace {
 
 using core::Pose;
+using core::Quat;
 using core::Vec3;
 
 /// A convex part of a body's shape. A compound has several, other shapes have one.
@@ -24,6 +28,8 @@ struct Part {
   std::unique_ptr<btConvexShape> shape;
   Pose pose;          ///< pose of the part in the body's frame
   double radius = 0;  ///< bounding sphere around the part's own origin
+  Spine spine;
+  std::optional<Vec3> box;  ///< half extents, if it is a box
 };
 
 struct ConvexParts {
@@ -44,7 +50,9 @@ struct MakeParts {
     std::vector<Part> made;
     for (const core::CompoundPart& part : parts) {
       const auto radius = std::visit([](const auto& s) { return core::bounding_radius(s); }, part.shape);
-      made.push_back({make_convex(part.shape, Margin::kNone), part.pose, radius});
+      const auto* const box = std::get_if<core::Box>(&part.shape);
+      made.push_back({make_convex(part.shape, Margin::kNone), part.pose, radius, spine_of(part.shape),
+                      box != nullptr ? std::optional(box->half_extents) : std::nullopt});
     }
     return made;
   }
@@ -54,7 +62,7 @@ Pose composed(const Pose& outer, const Pose& inner) {
   return {outer.p_WB + outer.q_WB * inner.p_WB, outer.q_WB * inner.q_WB};
 }
 
-bool is_ball(const Part& part) { return part.shape->getShapeType() == SPHERE_SHAPE_PROXYTYPE; }
+bool is_ball(const Part& part) { return part.spine.is_exact && part.spine.half.isZero(0); }
 
 /// The point of the part that is farthest in `direction` (a unit vector), without its margin.
 btVector3 farthest(const Part& part, const btTransform& X, const btVector3& direction) {
@@ -121,9 +129,25 @@ class Query : public core::ClearanceQuery {
   double bounding_radius(core::PrototypeId prototype) const override { return of(prototype).radius; }
 
  private:
+  /// Distance of a box and a ball or capsule. Nothing if they are other shapes, or if the spine meets the box. `p`:
+  /// from the ball or capsule to the box, `half`: half of its spine.
+  static std::optional<double> gap_to_box(const Part& box, const Pose& pose, const Part& round, const Vec3& p,
+                                          const Vec3& half) {
+    if (!box.box || !round.spine.is_exact) return std::nullopt;
+    const Quat to_box = pose.q_WB.conjugate();
+    const double apart = segment_from_box(to_box * -p, to_box * half, *box.box);
+    return apart > 0 ? std::optional(apart - round.spine.radius) : std::nullopt;
+  }
+
   static double between(const Part& a, const Pose& pose_a, const Part& b, const Pose& pose_b, double limit_m) {
     const double spheres_apart = (pose_b.p_WB - pose_a.p_WB).norm() - a.radius - b.radius;
     if (spheres_apart > limit_m || (is_ball(a) && is_ball(b))) return spheres_apart;
+    const Vec3 p_AB = pose_b.p_WB - pose_a.p_WB;
+    const Vec3 half_a = pose_a.q_WB * a.spine.half, half_b = pose_b.q_WB * b.spine.half;
+    const double spines_apart = segments_apart(half_a, p_AB, half_b) - a.spine.radius - b.spine.radius;
+    if (spines_apart > limit_m || (a.spine.is_exact && b.spine.is_exact)) return spines_apart;
+    if (const auto gap = gap_to_box(a, pose_a, b, -p_AB, half_b)) return *gap;
+    if (const auto gap = gap_to_box(b, pose_b, a, p_AB, half_a)) return *gap;
     const btTransform X_A = to_bullet(pose_a), X_B = to_bullet(pose_b);
     const double apart = apart_at_least(a, X_A, b, X_B, limit_m);
     return apart > limit_m ? apart : distance(a, X_A, b, X_B, spheres_apart);
