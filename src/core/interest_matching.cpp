@@ -14,10 +14,10 @@ namespace {
 
 using horizon::kHomewardHops;
 
-/// Is the body's bounding sphere at most `distance_m` from the sphere of `radius_m` around `p`?
-bool is_within(const Path& body, const Vec3& p, double radius_m, double distance_m) {
-  const double reach = body.radius_m + radius_m + distance_m;
-  return reach >= 0 && (body.pose.p_WB - p).squaredNorm() <= reach * reach;
+/// Are two spheres, around `p` and `other`, at most `distance_m` apart?
+bool is_within(const Vec3& p, double radius_m, const Vec3& other, double other_radius_m, double distance_m) {
+  const double reach = radius_m + other_radius_m + distance_m;
+  return reach >= 0 && (p - other).squaredNorm() <= reach * reach;
 }
 
 /// True if an own cluster that so far would go to `other` goes to `host` instead. False if `host` is not among `live`.
@@ -226,14 +226,16 @@ void InterestMatching::notice_grown() {
   }
 }
 
-/// Fills ranges_ with range_of(body, hops) of all bodies of the block, from `least_hops` on.
+/// Fills places_ with the bodies of the block, and ranges_ with range_of(body, hops) of them, from `least_hops` on.
 template <class RangeOf>
 void InterestMatching::take_ranges(const ForeignBlock& block, int least_hops, RangeOf&& range_of) {
   const int most_hops = clusters_.most_hops() + kHomewardHops;
+  places_.clear();
   ranges_.clear();
   least_hops_ = pulls_chain() ? 0 : least_hops;
   ranges_each_ = static_cast<std::size_t>(most_hops - least_hops_) + 1;
   for (const std::uint32_t f : block.bodies) {
+    places_.push_back({foreign_[f].path.pose.p_WB, foreign_[f].path.radius_m});
     for (int hops = least_hops_; hops <= most_hops; ++hops) ranges_.push_back(range_of(foreign_[f].path, hops));
   }
 }
@@ -248,10 +250,10 @@ double InterestMatching::widest_range(double speed_m_s) const {
 }
 
 /// Is `own` in range of the k-th body of the block? Call after take_ranges().
-bool InterestMatching::is_in_range(const ForeignBlock& block, std::size_t k, const Candidate& own) const {
+bool InterestMatching::is_in_range(std::size_t k, const Candidate& own) const {
   const std::size_t column = own.hops - static_cast<std::size_t>(least_hops_);
   const double range = ranges_[k * ranges_each_ + column].at(own.speed_m_s);
-  return is_within(foreign_[block.bodies[k]].path, own.p_WB, own.radius_m, range);
+  return is_within(places_[k].p_WB, places_[k].radius_m, own.p_WB, own.radius_m, range);
 }
 
 /// Finds our bodies that have to be announced because foreign ones are near. Most of them are known already: their
@@ -268,15 +270,15 @@ void InterestMatching::notice(const ForeignBlock& block) {
   clusters_.near().for_each_near(block.lo, block.hi, range_at, [&](std::uint32_t i) {
     if (!knows(i)) candidates_.push_back(candidate(i, own_.path(i).speed_m_s, kHomewardHops));
   });
-  for (std::size_t k = 0; k < block.bodies.size(); ++k) {
-    std::erase_if(candidates_, [&](const Candidate& c) {
-      if (!is_in_range(block, k, c) ||
+  for (const Candidate& c : candidates_) {
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+      if (!is_in_range(k, c) ||
           !aura_.may_approach(foreign_[block.bodies[k]].path, own_.path(c.own), static_cast<int>(c.hops))) {
-        return false;
+        continue;
       }
-      if (!knows(c.own)) note(c.own, block.host);
-      return true;
-    });
+      note(c.own, block.host);
+      break;
+    }
   }
 }
 
@@ -314,7 +316,8 @@ void InterestMatching::notice_again(std::uint32_t own) {
     const Audience region = vicinity_.bit_of(foreign.host);
     if (noticed_[own] && (noticed_by_[own] & region) == region) return;
     const Range range = aura_.notice(foreign.path.speed_m_s, foreign.path.age_steps, hops);
-    if (is_within(foreign.path, path.pose.p_WB, path.radius_m, range.at(path.speed_m_s)) &&
+    if (is_within(foreign.path.pose.p_WB, foreign.path.radius_m, path.pose.p_WB, path.radius_m,
+                  range.at(path.speed_m_s)) &&
         aura_.may_approach(foreign.path, path, hops)) {
       note(own, foreign.host);
     }
@@ -323,17 +326,25 @@ void InterestMatching::notice_again(std::uint32_t own) {
 
 /// Finds pairs of a foreign and an own body that may meet. Such bodies have been noticed before, because meetings reach
 /// less far than notice. Of those that have a way home, also pairs that may meet one hop later (judge_expected()).
+///
+/// Where pulls do not chain, a host that pulls nothing from here matters to our bodies outside our region only: it
+/// keeps them from going home.
 void InterestMatching::find_pairs(const ForeignBlock& block) {
   const double drift = 1 + aura_.rules().uncertainty;  // upper bound of Aura::drift_m_s() for each m/s of top speed
   take_ranges(block, clusters_.most_hops(), [&](const Path& path, int hops) { return aura_.meet_range(path, hops); });
   candidates_.clear();
   const auto range_at = [&](double speed_m_s) { return widest_range(drift * speed_m_s); };
-  clusters_.near().for_each_near(block.lo, block.hi, range_at, [&](std::uint32_t i) {
+  const auto take = [&](std::uint32_t i) {
     candidates_.push_back(candidate(i, aura_.drift_m_s(own_.path(i)), outside(i) ? kHomewardHops : 0));
-  });
+  };
+  if (pulls_chain() || pulls_from(block.host, vicinity_.self, live_)) {
+    clusters_.near().for_each_near(block.lo, block.hi, range_at, take);
+  } else {
+    std::ranges::for_each(near_, take);
+  }
   for (std::size_t k = 0; k < block.bodies.size(); ++k) {
     for (const Candidate& c : candidates_) {
-      if (is_in_range(block, k, c)) pairs_.push_back({block.bodies[k], c.own});
+      if (is_in_range(k, c)) pairs_.push_back({block.bodies[k], c.own});
     }
   }
 }

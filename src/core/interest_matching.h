@@ -88,7 +88,7 @@ class InterestMatching {
   void note(std::uint32_t own, RegionId host);
   void take_news();
   void find_pairs(const ForeignBlock& block);
-  bool is_in_range(const ForeignBlock& block, std::size_t k, const Candidate& own) const;
+  bool is_in_range(std::size_t k, const Candidate& own) const;
   Candidate candidate(std::uint32_t own, double speed_m_s, int more_hops) const;
   template <class RangeOf>
   void take_ranges(const ForeignBlock& block, int least_hops, RangeOf&& range_of);
@@ -125,6 +125,11 @@ class InterestMatching {
   std::vector<RegionId> live_;  ///< neighbours that can take a cluster, ascending
   ForeignBodies foreign_;
   std::vector<Pair> pairs_;
+  struct Place {
+    Vec3 p_WB;
+    double radius_m;
+  };
+  std::vector<Place> places_;          ///< of the bodies of the block
   std::vector<Range> ranges_;          ///< by foreign body of the block, then by hops
   std::size_t ranges_each_ = 0;        ///< entries of ranges_ for each body
   int least_hops_ = 0;                 ///< hops of the first of them

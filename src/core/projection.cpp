@@ -116,8 +116,10 @@ void Projection::classify(const Snapshot& snapshot, const InterestMatching& matc
 
 void Projection::classify(std::uint32_t i, const InterestMatching& matching) {
   Track& track = tracks_[i];
+  const bool outside = matching.outside(i);
+  if (!outside) track.island_since = -1;
   track.audience = matching.audience(i);
-  move(track, matching.outside(i)                ? PhaseEvent::kOutside
+  move(track, outside                            ? PhaseEvent::kOutside
               : track.audience != kNobodyListens ? PhaseEvent::kNearBoundary
                                                  : PhaseEvent::kFarFromBoundary);
 }

@@ -14,7 +14,7 @@
 namespace aurasim::core {
 namespace {
 
-/// World numbers from here on are for clusters that make up states alone; no region has such a number.
+/// World numbers from here on are for worlds in which clusters make up states; no region has such a number.
 constexpr std::uint32_t kFirstLonely = 1U << 31U;
 
 /// Turns the length of a body's way through a step into a speed for the near index. NearIndex::kSlow then separates
@@ -55,6 +55,7 @@ StateCheck::State& StateCheck::state(Step step) {
   place->step = step;
   place->own.clear();
   place->others.clear();
+  place->top_speed_squared = 0;
   return *place;
 }
 
@@ -126,9 +127,14 @@ void StateCheck::take_all(const OwnBodies& own, State& now) {
   while (j < own.ids_before().size()) leave();
 }
 
+void StateCheck::add_own(BodyId id, const Path& path, State& to) const {
+  to.own.push_back({id, value_of(vicinity_.self), path, path.unborn_steps <= 0});
+  to.top_speed_squared = std::max(to.top_speed_squared, path.v_WB.squaredNorm());
+}
+
 /// Stores one of our bodies in the present state.
 void StateCheck::note(std::uint32_t i, const OwnBodies& own, State& now) {
-  now.own.push_back({own.id(i), value_of(vicinity_.self), own.path(i), own.path(i).unborn_steps <= 0});
+  add_own(own.id(i), own.path(i), now);
   noted_[i] = now.step;
 }
 
@@ -137,14 +143,14 @@ void StateCheck::note(std::uint32_t i, const OwnBodies& own, State& now) {
 void StateCheck::note_before(BodyId id, const Path& before, Step noted, Step now) {
   for (auto state = states_.rbegin(); state != states_.rend() && state->step > noted; ++state) {
     if (state->step >= now) continue;
-    state->own.push_back({id, value_of(vicinity_.self), before, before.unborn_steps <= 0});
+    add_own(id, before, *state);
   }
 }
 
-void StateCheck::take_made_up(const BodyState& body, Step step, std::uint32_t cluster) {
+void StateCheck::take_made_up(const BodyState& body, Step step, std::uint32_t world) {
   if (step < checked_ || step <= whole_) return;
   state(step).others.push_back(
-      {body.id, kFirstLonely + cluster % kFirstLonely, path_of(body, step, aura_.clearance()), body.birth <= step});
+      {body.id, kFirstLonely + world % kFirstLonely, path_of(body, step, aura_.clearance()), body.birth <= step});
 }
 
 void StateCheck::take_to_come(const Neighbour& neighbour, std::span<const AuraRecord> to_come) {
@@ -234,32 +240,67 @@ StateCheck::Way StateCheck::way(const Sighting& now, const Sighting* before) con
   return way;
 }
 
-void StateCheck::gather_ways(const State& before, const State& after) {
-  const auto gather = [&](const std::vector<Sighting>& bodies, const std::vector<Sighting>& same,
-                          const std::vector<Sighting>& other, std::vector<Way>& ways) {
-    ways.clear();
-    auto old = same.begin();
-    for (const Sighting& now : bodies) {
-      while (old != same.end() && old->id < now.id) ++old;
-      const Sighting* known = old != same.end() && old->id == now.id ? &*old : nullptr;
-      if (!known) {  // the body may have changed host, so it is looked up in the other list
-        const auto found = std::ranges::lower_bound(other, now.id, {}, &Sighting::id);
-        if (found != other.end() && found->id == now.id) known = &*found;
-      }
-      // A body that appears in this state was not there while it was computed.
-      if (now.born && (!known || known->born)) ways.push_back(way(now, known));
+/// An upper bound of way().reach_m that needs no square roots of velocities and rotations. `apart`: distance between
+/// the body's places at the start and the end of the step; `fastest`: no body is faster at either, m/s.
+double StateCheck::reach_at_most(const Path& end, double apart, double fastest) const {
+  const double longest = aura_.rules().step_s * (fastest + aura_.rules().gravity.norm() * aura_.rules().step_s);
+  return 3 * end.radius_m + 1.5 * apart + 2.5 * longest;
+}
+
+/// Calls visit(now, before) for each body of `bodies` that was there while the state was computed. `before` is what it
+/// was a state earlier, in `same` or else in `other`; null: it was in neither.
+template <class Visit>
+void StateCheck::for_each_motion(const std::vector<Sighting>& bodies, const std::vector<Sighting>& same,
+                                 const std::vector<Sighting>& other, Visit&& visit) {
+  auto old = same.begin();
+  for (const Sighting& now : bodies) {
+    while (old != same.end() && old->id < now.id) ++old;
+    const Sighting* known = old != same.end() && old->id == now.id ? &*old : nullptr;
+    if (!known) {  // the body may have changed host, so it is looked up in the other list
+      const auto found = std::ranges::lower_bound(other, now.id, {}, &Sighting::id);
+      if (found != other.end() && found->id == now.id) known = &*found;
     }
-  };
-  gather(after.own, before.own, before.others, own_);
-  gather(after.others, before.others, before.own, others_);
+    // A body that appears in this state was not there while it was computed.
+    if (now.born && (!known || known->born)) visit(now, known);
+  }
+}
+
+/// Gathers the bodies of other worlds, and those of ours that may be near one of them.
+void StateCheck::gather_ways(const State& before, const State& after) {
+  others_.clear();
+  for_each_motion(after.others, before.others, before.own,
+                  [&](const Sighting& now, const Sighting* known) { others_.push_back(way(now, known)); });
+  cover_others();
+  own_.clear();
+  if (others_.empty()) return;
+  const double fastest = std::sqrt(std::max(before.top_speed_squared, after.top_speed_squared));
+  const double step_s = aura_.rules().step_s;
+  for_each_motion(after.own, before.own, before.others, [&](const Sighting& now, const Sighting* known) {
+    const Vec3& end = now.path.pose.p_WB;
+    const Vec3 begin = known ? known->path.pose.p_WB : Vec3(end - step_s * now.path.v_WB);
+    const double most_m_s = known ? std::max(fastest, known->path.v_WB.norm()) : fastest;
+    const double reach = reach_at_most(now.path, (end - begin).norm(), most_m_s);
+    if (!covered_.may_meet(0.5 * (begin + end), reach + margin_m_)) return;
+    const Way one = way(now, known);
+    if (covered_.may_meet(one.middle, one.reach_m + margin_m_)) own_.push_back(one);
+  });
+}
+
+/// Indexes the bodies of other worlds.
+void StateCheck::cover_others() {
   middles_.clear();
+  double reach_m = 0;
   for (const Way& way : others_) {
     Path& middle = middles_.emplace_back();
     middle.pose.p_WB = way.middle;
     middle.radius_m = way.now->path.radius_m;
     middle.speed_m_s = kWays_per_s * (way.reach_m - middle.radius_m);
+    reach_m += way.reach_m;
   }
   near_.build(middles_);
+  margin_m_ = aura_.rules().contact_margin_m + 2 * rounded_within_m(near_.top_radius());
+  covered_.clear(std::max(4 * reach_m / static_cast<double>(std::max<std::size_t>(1, others_.size())), 1e-3));
+  for (const Way& way : others_) covered_.add(way.middle, way.reach_m);
 }
 
 /// Could continuous collision detection stop `moving` at `other`? Physics moves a body ahead by a substep and tests
@@ -329,9 +370,9 @@ bool StateCheck::touch(const Motion& a, const Motion& b) const {
 }
 
 /// Compares `one` with the ways in others_ from index `from` on.
-void StateCheck::compare_with_others(const Way& one, std::uint32_t from, double margin_m) {
+void StateCheck::compare_with_others(const Way& one, std::uint32_t from) {
   Progress::mark();
-  const double range = margin_m + one.reach_m;
+  const double range = margin_m_ + one.reach_m;
   const auto range_at = [&](double speed_m_s) { return range + speed_m_s / kWays_per_s; };
   near_.for_each_near(one.middle, 0, range_at, [&](std::uint32_t i) {
     const Way& other = others_[i];
@@ -345,9 +386,9 @@ void StateCheck::compare_with_others(const Way& one, std::uint32_t from, double 
 }
 
 /// Compares `other` with our bodies that have not changed since the state before.
-void StateCheck::compare_with_resting(const Way& other, double margin_m) {
+void StateCheck::compare_with_resting(const Way& other) {
   Progress::mark();
-  const double range = margin_m + other.reach_m;
+  const double range = margin_m_ + other.reach_m;
   matching_->clusters().near().for_each_near(
       other.middle, 0, [range](double) { return range; },
       [&](std::uint32_t i) {
@@ -372,23 +413,14 @@ void StateCheck::check(Step step) {
   if (after.others.empty()) return;
   step_ = step;
   gather_ways(before, after);
-  if (others_.empty()) return;
-  double reach_m = 0;
-  for (const Way& way : others_) reach_m += way.reach_m;
-  covered_.clear(std::max(4 * reach_m / static_cast<double>(others_.size()), 1e-3));
-  const std::uint32_t world = others_.front().now->world;
-  bool several = false;
-  for (const Way& way : others_) {
-    covered_.add(way.middle, way.reach_m);
-    several = several || way.now->world != world;
+  for (const Way& way : own_) compare_with_others(way, 0);
+  if (std::ranges::any_of(noted_, [step](Step noted) { return noted < step; })) {
+    for (const Way& way : others_) compare_with_resting(way);
   }
-  const double margin = aura_.rules().contact_margin_m + 2 * rounded_within_m(near_.top_radius());
-  for (const Way& way : own_) {
-    if (covered_.may_meet(way.middle, way.reach_m + margin)) compare_with_others(way, 0, margin);
-  }
-  for (const Way& way : others_) compare_with_resting(way, margin);
   std::ranges::sort(found_, {}, [](const Alarm& alarm) { return std::tuple(alarm.step, alarm.a, alarm.b); });
-  for (std::uint32_t i = 0; several && i < others_.size(); ++i) compare_with_others(others_[i], i + 1, margin);
+  const bool several =
+      std::ranges::any_of(others_, [this](const Way& way) { return way.now->world != others_.front().now->world; });
+  for (std::uint32_t i = 0; several && i < others_.size(); ++i) compare_with_others(others_[i], i + 1);
 }
 
 }  // namespace aurasim::core

@@ -31,9 +31,9 @@ class StateCheck {
   /// Adds our bodies of a state, whether they were announced or not. A foreign body that left its path may have come to
   /// one that was not. The foreign one was announced, because it is outside of its region or near the border.
   void take_own(const Snapshot& snapshot, const InterestMatching& matching);
-  /// Adds a state that one of our bodies made up alone, as part of a cluster. It shared no world with other clusters,
-  /// so each has a number of its own.
-  void take_made_up(const BodyState& body, Step step, std::uint32_t cluster);
+  /// Adds a state that one of our bodies has made up. Clusters that make up states together share a world, which has a
+  /// number of its own.
+  void take_made_up(const BodyState& body, Step step, std::uint32_t world);
 
   /// Adds states, up to the one in which the run stands, of bodies that join the neighbour later.
   void take_to_come(const Neighbour& neighbour, std::span<const AuraRecord> to_come);
@@ -59,6 +59,7 @@ class StateCheck {
     Step step = 0;
     std::vector<Sighting> own;     ///< our bodies but for those that have not changed from this state on (noted_)
     std::vector<Sighting> others;  ///< bodies of other worlds
+    double top_speed_squared = 0;  ///< of `own`
   };
   /// A sphere of `reach_m` around `middle` that holds all of a body throughout a step. Cheaper than a Motion, and
   /// larger.
@@ -79,13 +80,19 @@ class StateCheck {
   void take_all(const OwnBodies& own, State& now);
   void note(std::uint32_t i, const OwnBodies& own, State& now);
   void note_before(BodyId id, const Path& before, Step noted, Step now);
-  void compare_with_resting(const Way& other, double margin_m);
+  void add_own(BodyId id, const Path& path, State& to) const;
+  void compare_with_resting(const Way& other);
   void add(const AuraRecord& aura, Step step, std::uint32_t world);
   void check(Step step);
   void forget();
+  template <class Visit>
+  static void for_each_motion(const std::vector<Sighting>& bodies, const std::vector<Sighting>& same,
+                              const std::vector<Sighting>& other, Visit&& visit);
   void gather_ways(const State& before, const State& after);
+  void cover_others();
+  double reach_at_most(const Path& end, double apart, double fastest) const;
   Way way(const Sighting& now, const Sighting* before) const;
-  void compare_with_others(const Way& one, std::uint32_t from, double margin_m);
+  void compare_with_others(const Way& one, std::uint32_t from);
   Motion motion(const Sighting& now, const Sighting* before) const;
   bool touch(const Motion& a, const Motion& b) const;
   bool meet_ahead(const Motion& a, const Motion& b, double allowed_m) const;
@@ -107,6 +114,7 @@ class StateCheck {
   std::vector<Path> middles_;                   ///< middles of others_, indexed by near_
   NearIndex near_;
   CoveredColumns covered_;  ///< by others_; most of our bodies are far from all of them
+  double margin_m_ = 0;     ///< bodies that are this near to each other may touch
   Step step_ = 0;           ///< the step that is being checked
   std::vector<Alarm> found_;
 };
