@@ -195,16 +195,16 @@ void Protocol::check(const Snapshot& snapshot) {
   for (const Alarm& alarm : check_.found()) alarms_.raise(alarm.step, alarm.a, alarm.b);
 }
 
-void Protocol::note_made_up(Step step, std::uint32_t cluster, std::span<const BodyRecord> bodies) {
-  if (aura_->rules().redo && step > settings_.start) note_lonely(step, cluster, bodies, past_);
+void Protocol::note_made_up(Step step, std::uint32_t world, std::span<const BodyRecord> bodies) {
+  if (aura_->rules().redo && step > settings_.start) note_lonely(step, world, bodies, past_);
 }
 
 /// Gives the check a state that bodies made up alone, and adds it to the `past` of a batch, for others' checks.
-void Protocol::note_lonely(Step step, std::uint32_t cluster, std::span<const BodyRecord> bodies,
+void Protocol::note_lonely(Step step, std::uint32_t world, std::span<const BodyRecord> bodies,
                            std::vector<AuraRecord>& past) {
   for (const BodyRecord& record : bodies) {
     const BodyState body = state_of(record);
-    check_.take_made_up(body, step, cluster);
+    check_.take_made_up(body, step, world);
     past.push_back(aura_record(body, vicinity_.self, step));
   }
 }
@@ -217,8 +217,8 @@ void Protocol::begin_to_stand() {
   word_.listeners = vicinity_.neighbours;
 }
 
-void Protocol::note_to_come(Step step, std::uint32_t cluster, std::span<const BodyRecord> bodies) {
-  note_lonely(step, cluster, bodies, word_.aura.past);
+void Protocol::note_to_come(Step step, std::uint32_t world, std::span<const BodyRecord> bodies) {
+  note_lonely(step, world, bodies, word_.aura.past);
 }
 
 const Outbox* Protocol::next_word() {

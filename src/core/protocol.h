@@ -49,7 +49,7 @@ struct Changes {
   std::vector<Order> orders;  ///< orders received since the last step, in sequence; execute them before anything else
 };
 
-/// A cluster that has to leave. The caller releases it from physics and passes it to hand_over().
+/// Clusters that have to leave. The caller releases it from physics and passes it to hand_over().
 struct Departure {
   RegionId destination{};
   HandOffReason reason{};
@@ -104,7 +104,7 @@ class Protocol {
   /// Lets messages take effect. Returns what changes before state `n` is computed; valid until the next call.
   const Changes& receive(Step n, Joining joining = Joining::kInTime);
 
-  /// Looks at a state. Returns the clusters that have to leave; valid until the next call.
+  /// Looks at a state. Returns who has to leave; valid until the next call.
   const std::vector<Departure>& observe(const Snapshot& snapshot);
 
   /// After a redo, in the state of the cut: true if gather() has not been called yet, and all neighbours have said
@@ -127,18 +127,18 @@ class Protocol {
   /// Like earliest_effect(), for orders that add or move no body: before that state all nodes have received the order.
   Step earliest_agreement() const;
 
-  /// Call for each state that an adopted cluster has made up. `cluster`: a number that no other cluster has, also not
-  /// one that has joined in an earlier state or joins later.
-  void note_made_up(Step step, std::uint32_t cluster, std::span<const BodyRecord> bodies);
+  /// Call for each state that adopted clusters have made up together. `world`: a number that no other such world has,
+  /// also not one that has joined in an earlier state or joins later.
+  void note_made_up(Step step, std::uint32_t world, std::span<const BodyRecord> bodies);
 
   // While the run stands in the state of the last observe(), and all that others have sent up to it has arrived
   // (core/standing.h)
   /// Has begin_to_stand() been called in this state?
   bool stands() const { return standing_.state() == outbox_.aura.stamp; }
   void begin_to_stand();
-  /// Call after begin_to_stand() for each state, up to the present one, of a cluster that joins later. `cluster` as
-  /// in note_made_up().
-  void note_to_come(Step step, std::uint32_t cluster, std::span<const BodyRecord> bodies);
+  /// Call after begin_to_stand() for each state, up to the present one, of a cluster that joins later. `world` as in
+  /// note_made_up().
+  void note_to_come(Step step, std::uint32_t world, std::span<const BodyRecord> bodies);
   /// The next word to send; null: there is none now. Precondition: stands(). Call again until it returns null.
   const Outbox* next_word();
   /// The newest state in which the run stood and which all nodes have checked, as far as this node knows; -1: none.
@@ -199,6 +199,7 @@ class Protocol {
   void let_go(BodyId id);
   void apply_late(Order& order, Step n);
   void decide(const Snapshot& snapshot);
+  void decide_for_clusters(const Snapshot& snapshot);
   void list_complete_clusters();
   void decide_for_cluster(std::uint32_t i, const Snapshot& snapshot);
   void send_home(const Snapshot& snapshot);
@@ -213,7 +214,7 @@ class Protocol {
   void check_as_it_stands();
   Step heard_of_all(Step patience) const;
   Step before_alarms(Step confirmed) const;
-  void note_lonely(Step step, std::uint32_t cluster, std::span<const BodyRecord> bodies, std::vector<AuraRecord>& past);
+  void note_lonely(Step step, std::uint32_t world, std::span<const BodyRecord> bodies, std::vector<AuraRecord>& past);
 
   ProtocolSettings settings_;
   Vicinity vicinity_;

@@ -7,15 +7,47 @@
 #include "core/protocol.h"
 
 namespace aurasim::core {
+namespace {
+
+/// Clusters are added to a departure while it has at most so many bodies: a message that fits into one datagram is the
+/// cheapest.
+constexpr std::size_t kMostMerged = 32;
+
+/// Unites clusters that leave for one destination for one reason: one message takes less time than several, and so does
+/// one world in which they make up states.
+void merge(std::vector<Departure>& departures) {
+  auto end = departures.begin();
+  for (Departure& departure : departures) {
+    const auto same = std::find_if(departures.begin(), end, [&](const Departure& other) {
+      return other.destination == departure.destination && other.reason == departure.reason &&
+             other.bodies.size() + departure.bodies.size() <= kMostMerged;
+    });
+    if (same != end) {
+      same->bodies.insert(same->bodies.end(), departure.bodies.begin(), departure.bodies.end());
+    } else {
+      if (&*end != &departure) *end = std::move(departure);
+      ++end;
+    }
+  }
+  departures.erase(end, departures.end());
+  for (Departure& departure : departures) std::ranges::sort(departure.bodies);
+}
+
+}  // namespace
 
 void Protocol::decide(const Snapshot& snapshot) {
   goes_home_.resize(snapshot.bodies.size());
   homing_.clear();
   largest_cluster_ = 0;
-  if (!aura_->warns()) {
+  if (aura_->warns()) {
+    decide_for_clusters(snapshot);
+  } else {
     for (std::uint32_t i = 0; i < snapshot.bodies.size(); ++i) decide_naively(i, snapshot);
-    return;
   }
+  merge(departing_);
+}
+
+void Protocol::decide_for_clusters(const Snapshot& snapshot) {
   list_complete_clusters();
   for (const auto& [first, cluster] : complete_) {
     Progress::mark();
@@ -117,7 +149,6 @@ void Protocol::depart(std::uint32_t i, RegionId destination, HandOffReason reaso
     projection_.depart(snapshot.bodies[j], j, destination, collision ? PhaseEvent::kAuraHit : PhaseEvent::kIsland,
                        outbox_.aura);
   });
-  std::sort(departure.bodies.begin(), departure.bodies.end());
 }
 
 void Protocol::hand_over(const Departure& departure, ClusterState cluster) {

@@ -6,25 +6,10 @@
 #include <string>
 #include <tuple>
 
+#include "core/united.h"
+
 namespace aurasim::core {
 namespace {
-
-/// Appends the records of `from`. Bodies stay in ascending order, points and joint values are appended.
-void append(ClusterState& to, const ClusterState& from) {
-  const auto first_point = static_cast<std::uint32_t>(to.points.size() / kContactPointDoubles);
-  const auto first_value = static_cast<std::uint32_t>(to.joint_values.size());
-  to.bodies.insert(to.bodies.end(), from.bodies.begin(), from.bodies.end());
-  for (ManifoldRecord manifold : from.manifolds) {
-    manifold.first_point += first_point;
-    to.manifolds.push_back(manifold);
-  }
-  to.points.insert(to.points.end(), from.points.begin(), from.points.end());
-  for (JointRecord joint : from.joints) {
-    joint.first_value += first_value;
-    to.joints.push_back(joint);
-  }
-  to.joint_values.insert(to.joint_values.end(), from.joint_values.begin(), from.joint_values.end());
-}
 
 /// Unites the orders of several regions. Each region knows a beginning of the same sequence, with the same orders left
 /// out.
@@ -91,10 +76,7 @@ WorldCut merge(std::vector<WorldCut> parts) {
     append(whole.setpoints, part->setpoints);
     whole.last_order = std::max(whole.last_order, part->last_order);
   }
-  std::ranges::sort(whole.bodies.bodies, {}, &BodyRecord::id);
-  // Stable, because two compounds have several manifolds, whose order counts.
-  std::ranges::stable_sort(whole.bodies.manifolds, {},
-                           [](const ManifoldRecord& m) { return std::pair(m.object0, m.object1); });
+  put_in_order(whole.bodies);
   refuse_twins(whole);
   return whole;
 }

@@ -1,10 +1,12 @@
 #include "node/node.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "core/horizon.h"
 #include "core/progress.h"
+#include "core/united.h"
 #include "node/timed.h"
 #include "physics/clearance.h"
 #include "physics/state_hash.h"
@@ -173,6 +175,7 @@ void Node::compute_state(core::Step n) {
 void Node::apply(const core::Changes& changes) {
   if (!changes.let_go.empty()) world_.release(changes.let_go);
   report_.let_go.insert(report_.let_go.end(), changes.let_go.begin(), changes.let_go.end());
+  std::vector<const core::Adoption*> joining;
   for (const core::Adoption& adoption : changes.adoptions) {
     if (!is_of_the_scene(adoption.cluster, scene())) {
       core::Inbox news;
@@ -186,21 +189,28 @@ void Node::apply(const core::Changes& changes) {
       cuts_.note_arrival(adoption);
       saved_.note_arrival(adoption);
     }
-    adopt(adoption);
+    joining.push_back(&adoption);
   }
+  adopt(joining);
 }
 
-/// Takes in a cluster. After the last state its stamp may be a later one; then it joins unchanged.
-void Node::adopt(const core::Adoption& adoption) {
-  world_.adopt(adoption.cluster, std::min(adoption.stamp, current_step()),
-               [&](core::Step step, std::span<const core::BodyRecord> bodies) {
-                 if (setup_.hash_states) report_.hash.push_back({step, physics::state_hash_sum(bodies)});
-                 if (is_observed_) report_.made_up.push_back(made_up(step, bodies, adoption.cluster));
-                 protocol_->note_made_up(step, lonely_clusters_, bodies);
-               });
-  ++lonely_clusters_;
-  note_made_up_contacts();
-  note_arrivals(adoption);
+/// Takes in clusters. Those of one stamp make up the states that they have missed together, in one world. After the
+/// last state a stamp may be a later one; then the cluster joins unchanged.
+void Node::adopt(std::span<const core::Adoption* const> adoptions) {
+  std::map<core::Step, core::ClusterState> by_stamp;
+  for (const core::Adoption* const adoption : adoptions) core::append(by_stamp[adoption->stamp], adoption->cluster);
+  for (auto& [stamp, clusters] : by_stamp) {
+    core::put_in_order(clusters);
+    world_.adopt(clusters, std::min(stamp, current_step()),
+                 [&](core::Step step, std::span<const core::BodyRecord> bodies) {
+                   if (setup_.hash_states) report_.hash.push_back({step, physics::state_hash_sum(bodies)});
+                   if (is_observed_) report_.made_up.push_back(made_up(step, bodies, clusters));
+                   protocol_->note_made_up(step, lonely_worlds_, bodies);
+                 });
+    ++lonely_worlds_;
+    note_made_up_contacts();
+  }
+  for (const core::Adoption* const adoption : adoptions) note_arrivals(*adoption);
 }
 
 void Node::observe(bool states, bool contacts) {

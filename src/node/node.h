@@ -178,7 +178,7 @@ class Node {
   void compute_step();
   void compute_state(core::Step n);
   void apply(const core::Changes& changes);
-  void adopt(const core::Adoption& adoption);
+  void adopt(std::span<const core::Adoption* const> adoptions);
   void announce_births(core::Step state);
   void finish_state();
   void watch_collisions(const core::Snapshot& snapshot);
@@ -263,11 +263,11 @@ class Node {
   bool is_broken_ = false;  ///< a coupled region was lost in the middle of a step
   bool settled_ = false;
   bool is_observed_ = false;
-  std::vector<core::Order> redos_;     ///< ordered and not carried out yet, in sequence
-  std::uint64_t last_redo_ = 0;        ///< sequence of the newest of redos_ so far
-  std::uint32_t lonely_clusters_ = 0;  ///< number of clusters that have made up states alone so far
-  StepReport gathered_;                ///< rows of those that gather() has sent away, for the next report
-  bool is_changing_ = false;           ///< this node has ordered a change of the run; an order given now would be lost
+  std::vector<core::Order> redos_;   ///< ordered and not carried out yet, in sequence
+  std::uint64_t last_redo_ = 0;      ///< sequence of the newest of redos_ so far
+  std::uint32_t lonely_worlds_ = 0;  ///< number of worlds in which clusters have made up states so far
+  StepReport gathered_;              ///< rows of those that gather() has sent away, for the next report
+  bool is_changing_ = false;         ///< this node has ordered a change of the run; an order given now would be lost
   StaticOrders statics_;
   LateWords late_words_;
   core::Epoch first_epoch_ = 0;  ///< epoch that new bodies get

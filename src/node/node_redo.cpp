@@ -36,8 +36,8 @@ bool Node::stand() {
 void Node::begin_to_stand() {
   protocol_->begin_to_stand();
   for (const MadeUp& state : foresee()) {
-    protocol_->note_to_come(state.step, lonely_clusters_, state.bodies);
-    if (state.step == current_step()) ++lonely_clusters_;  // the last state of a cluster
+    protocol_->note_to_come(state.step, lonely_worlds_, state.bodies);
+    if (state.step == current_step()) ++lonely_worlds_;  // the last state of a cluster
   }
 }
 

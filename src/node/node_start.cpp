@@ -1,10 +1,12 @@
 // How a world comes into a node: the scene's, a saved one, or an earlier state of its own. In each case the node puts
 // in its part of one state (a Cut), and publishes that state. Under another map the present state is published anew.
 #include <algorithm>
+#include <map>
 #include <utility>
 #include <variant>
 
 #include "core/horizon.h"
+#include "core/united.h"
 #include "node/node.h"
 #include "node/saved_world_check.h"
 #include "node/scene_additions.h"
@@ -98,7 +100,9 @@ void Node::put_in(const Cut& part) {
   }
   watch_.put_back(part.collisions);
   to_be_born_ = part.to_be_born;
-  for (const core::Adoption& adoption : part.joining) adopt(adoption);
+  std::vector<const core::Adoption*> joining;
+  for (const core::Adoption& adoption : part.joining) joining.push_back(&adoption);
+  adopt(joining);
 }
 
 /// Publishes the state that has been put in. Its hash is reported unless the records have it already.
@@ -144,7 +148,12 @@ void Node::execute_saved(const core::WorldCut& world) {
 core::ClusterState Node::our_part() {
   const core::WorldCut& world = beginning_->world;
   world_.put_back(world.step, world.bodies);
-  for (const core::UnderWay& one : world.under_way) world_.adopt(one.cluster, one.stamp);
+  std::map<core::Step, core::ClusterState> late;  // by stamp: those of one stamp make up the states together
+  for (const core::UnderWay& one : world.under_way) core::append(late[one.stamp], one.cluster);
+  for (auto& [stamp, clusters] : late) {
+    core::put_in_order(clusters);
+    world_.adopt(clusters, stamp);
+  }
   world_.add(beginning_->born_soon);
   const core::Snapshot all = world_.snapshot();
   const std::vector<core::RegionId> hosts = hosts_at_start(all);
