@@ -76,6 +76,18 @@ TEST_F(Clearance, OfCapsules) {
   EXPECT_NEAR(between(capsule, at(0, 0, 0), capsule, at(0.5, 0, 0, turned(1, Vec3::UnitX()))), -0.1, kTolerance);
 }
 
+TEST_F(Clearance, OfABoxToACapsule) {
+  const core::Box cube{{0.5, 0.5, 0.5}};
+  const core::Capsule capsule{0.3, 2};
+  const Quat lying = turned(M_PI / 2, Vec3::UnitY());
+  EXPECT_NEAR(between(cube, at(0, 0, 0), capsule, at(0.2, 0, 1.2, lying)), 0.4, kTolerance) << "above a face";
+  EXPECT_NEAR(between(capsule, at(0, 0.8, 0.8, lying), cube, at(0, 0, 0)), 0.3 * std::sqrt(2) - 0.3, kTolerance)
+      << "beside an edge";
+  EXPECT_NEAR(between(cube, at(0, 0, 0), capsule, at(1.8, 0.8, 0.8, lying)), 0.3 * std::sqrt(3) - 0.3, kTolerance)
+      << "its end beyond a corner";
+  EXPECT_NEAR(between(cube, at(0, 0, 0), capsule, at(0, 0, 0.7, lying)), -0.1, kTolerance) << "in the face";
+}
+
 TEST_F(Clearance, OfCylinders) {
   const core::Cylinder cylinder{0.3, 2};
   EXPECT_NEAR(between(cylinder, at(0, 0, 0), cylinder, at(1, 0, 0)), 0.4, kTolerance) << "side by side";
