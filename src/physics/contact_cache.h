@@ -11,7 +11,7 @@
 //   18-20  second lateral direction               34  constraint force mixing (or contact stiffness)
 //   21     distance, negative: overlap            35  error reduction (or contact damping)
 //   22     friction of the two materials          36  constraint force mixing of friction
-//   23     rolling friction                       37  part of A: of a mesh, or feature (hull_contacts.h), or -1
+//   23     rolling friction                       37  part of A: of a mesh, or feature (whole_manifold.h); -1
 //   24     spinning friction                      38  part of B
 //   25     restitution                            39  index in A: child of a compound, triangle of a mesh, or -1
 //   26     contact flags                          40  index in B

@@ -89,6 +89,13 @@ Dispatcher::Dispatcher(btCollisionConfiguration& configuration, const InnerEdges
     registerCollisionCreateFunc(CUSTOM_POLYHEDRAL_SHAPE_TYPE, other, &hull_contacts_);
     registerCollisionCreateFunc(other, CUSTOM_POLYHEDRAL_SHAPE_TYPE, &hull_contacts_);
   }
+  for (const int round : {SPHERE_SHAPE_PROXYTYPE, CAPSULE_SHAPE_PROXYTYPE}) {
+    for (const int other : {SPHERE_SHAPE_PROXYTYPE, CAPSULE_SHAPE_PROXYTYPE, BOX_SHAPE_PROXYTYPE}) {
+      if (round == SPHERE_SHAPE_PROXYTYPE && other == SPHERE_SHAPE_PROXYTYPE) continue;
+      registerCollisionCreateFunc(round, other, &round_contacts_);
+      registerCollisionCreateFunc(other, round, &round_contacts_);
+    }
+  }
 }
 
 bool Dispatcher::find_contacts(btBroadphasePair& pair, const btDispatcherInfo& info) {

@@ -8,6 +8,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 
 #include "physics/hull_contacts.h"
+#include "physics/round_contacts.h"
 
 namespace aurasim::physics {
 
@@ -35,14 +36,18 @@ class Dispatcher : public btCollisionDispatcher {
   void* allocateCollisionAlgorithm(int bytes) override;
   void freeCollisionAlgorithm(void* memory) override;
 
-  /// While this is set, hulls and boxes get a manifold also if they do not touch.
-  void make_all_manifolds(bool wanted) { hull_contacts_.make_all_manifolds(wanted); }
+  /// While this is set, all pairs get a manifold, also if they do not touch.
+  void make_all_manifolds(bool wanted) {
+    hull_contacts_.make_all_manifolds(wanted);
+    round_contacts_.make_all_manifolds(wanted);
+  }
 
  private:
   std::unique_lock<std::mutex> hold_pools();
 
   const InnerEdges& inner_edges_;
   HullContactsMaker hull_contacts_;
+  RoundContactsMaker round_contacts_{kContactMargin};
   std::size_t algorithm_bytes_;  ///< of the largest of Bullet's algorithms
   /// For manifolds and algorithms. Grows with the contacts: Bullet's own pools take 6 MB in a world without any.
   std::pmr::unsynchronized_pool_resource pools_;

@@ -197,7 +197,7 @@ double depth_of(const Chosen& four) {
 }
 
 /// The points with these features, in their order; nothing if they are not 4, or one is missing.
-std::optional<Chosen> same_as_before(std::span<const HullPoint> points, std::span<const HullFeatures> before) {
+std::optional<Chosen> same_as_before(std::span<const HullPoint> points, std::span<const ContactFeatures> before) {
   Chosen same{};
   if (before.size() != same.size()) return std::nullopt;
   for (std::size_t i = 0; i < same.size(); ++i) {
@@ -208,7 +208,7 @@ std::optional<Chosen> same_as_before(std::span<const HullPoint> points, std::spa
   return same;
 }
 
-void reduce(std::span<const HullPoint> points, double margin_m, std::span<const HullFeatures> before, HullPoints& to) {
+void reduce(std::span<const HullPoint> points, double margin_m, std::span<const ContactFeatures> before, HullPoints& to) {
   Chosen chosen = choose(points, to.normal);
   const std::optional<Chosen> same = same_as_before(points, before);
   if (same && area_of(*same) >= kKeptArea * area_of(chosen) &&
@@ -226,7 +226,7 @@ void reduce(std::span<const HullPoint> points, double margin_m, std::span<const 
 }  // namespace
 
 HullPoints contact_points(const HullFaces& a, const HullFaces& b, const btTransform& X_AB, const HullGap& closest,
-                          double margin_m, std::span<const HullFeatures> before) {
+                          double margin_m, std::span<const ContactFeatures> before) {
   HullPoints result;
   result.normal = closest.normal;
   std::vector<HullPoint>& points = clip_space_of_this_thread().points;

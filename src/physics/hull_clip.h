@@ -3,28 +3,20 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <span>
 
 #include <LinearMath/btTransform.h>
 
+#include "physics/contact_features.h"
 #include "physics/hull_axes.h"
 #include "physics/hull_faces.h"
 
 namespace aurasim::physics {
 
-/// The two features of which a contact point consists. The same two have the same number in every step, whichever body
-/// has the face that the other one is clipped to.
-struct HullFeatures {
-  std::int32_t of_a = -1, of_b = -1;
-
-  bool operator==(const HullFeatures&) const = default;
-};
-
 struct HullPoint {
   btVector3 on_a{0, 0, 0}, on_b{0, 0, 0};  ///< in A's frame
   double gap = 0;                          ///< along the normal, m; negative: overlap
-  HullFeatures features;
+  ContactFeatures features;
 };
 
 struct HullPoints {
@@ -36,6 +28,6 @@ struct HullPoints {
 /// Up to 4 points with gaps of at most `margin_m`: the deepest one, and those that span the largest area. `before`:
 /// the features of the last points, which are kept rather than others that are hardly better.
 HullPoints contact_points(const HullFaces& a, const HullFaces& b, const btTransform& X_AB, const HullGap& closest,
-                          double margin_m, std::span<const HullFeatures> before);
+                          double margin_m, std::span<const ContactFeatures> before);
 
 }  // namespace aurasim::physics

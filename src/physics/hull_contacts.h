@@ -1,8 +1,5 @@
 // The contacts of two hulls or boxes, also as parts of compounds: all points of a manifold at once, from the two poses.
 // Bullet's own algorithm finds one point a step, and puts others beside it that it found in earlier steps.
-//
-// A point is named by the two features (corner, edge or face) that it lies on, in the fields m_partId0 and m_partId1,
-// which Bullet uses for meshes only. A point with the features of one of the last step goes on with its impulses.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionCreateFunc.h>
