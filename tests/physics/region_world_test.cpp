@@ -35,7 +35,7 @@ TEST_F(World, SnapshotIsInOrderOfIdsAndContacts) {
   std::vector<BodyRecord> bodies = pile(random, 1, 30, 0, 0);
   std::ranges::reverse(bodies);
   world.add(bodies);
-  run(world, 300);
+  run(world, 150);
   const core::Snapshot& snapshot = world.snapshot();
   EXPECT_TRUE(std::ranges::is_sorted(snapshot.bodies, {}, &core::BodyState::id));
   const auto pair_of = [](const core::Contact& c) { return std::pair(c.a, c.b); };

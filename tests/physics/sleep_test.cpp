@@ -131,9 +131,9 @@ TEST_F(Sleep, AChainOverManyBlocksSleepsAndWakesAsAWhole) {
   }
   make_world(kSide);
   world->add(initial_records(scene));
-  for (std::uint64_t i = 0; i < 24; ++i) place(200 + i, kCube, {2 + 4 * static_cast<double>(i), 2.99, 0.5});
-  place(300, kCube, {98, 3.99, 0.5});  // in the block beyond a cube that touches the chain
-  place(301, kCube, {98, 4.99, 0.5});
+  for (std::uint64_t i = 0; i < 24; ++i) place(200 + i, kCube, {2 + 4 * static_cast<double>(i), 3, 0.5});
+  place(300, kCube, {98, 4, 0.5});  // in the block beyond a cube that touches the chain
+  place(301, kCube, {98, 5, 0.5});
   fall_asleep(600);
   order(core::Impulse{BodyId{0}, {0, 0, 0.5}});
   world->step();
