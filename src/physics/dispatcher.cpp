@@ -25,9 +25,8 @@ bool bounds_overlap(const btBroadphaseProxy& a, const btBroadphaseProxy& b) {
   return TestAabbAgainstAabb2(a.m_aabbMin, a.m_aabbMax, b.m_aabbMin, b.m_aabbMax);
 }
 
-bool is_plane(const btBroadphaseProxy& proxy) {
-  const auto* const object = static_cast<const btCollisionObject*>(proxy.m_clientObject);
-  return object->getCollisionShape()->getShapeType() == STATIC_PLANE_PROXYTYPE;
+bool is_plane(const btCollisionObject& object) {
+  return object.getCollisionShape()->getShapeType() == STATIC_PLANE_PROXYTYPE;
 }
 
 /// Drops points that have slid away. Bullet looks for more corners on a plane only while a manifold has fewer than four
@@ -42,28 +41,8 @@ void drop_stale_points(btCollisionAlgorithm& algorithm) {
   }
 }
 
-/// Like Bullet's callback, with corrected contacts. Returns true if it has left out some.
-bool find_corrected(btBroadphasePair& pair, Dispatcher& dispatcher, const btDispatcherInfo& info) {
-  auto& a = *static_cast<btCollisionObject*>(pair.m_pProxy0->m_clientObject);
-  auto& b = *static_cast<btCollisionObject*>(pair.m_pProxy1->m_clientObject);
-  if (!dispatcher.needsCollision(&a, &b)) return false;
-  const btCollisionObjectWrapper wrap_a(nullptr, a.getCollisionShape(), &a, a.getWorldTransform(), -1, -1);
-  const btCollisionObjectWrapper wrap_b(nullptr, b.getCollisionShape(), &b, b.getWorldTransform(), -1, -1);
-  if (pair.m_algorithm == nullptr) {
-    pair.m_algorithm = dispatcher.findAlgorithm(&wrap_a, &wrap_b, nullptr, BT_CONTACT_POINT_ALGORITHMS);
-  }
-  if (pair.m_algorithm == nullptr) return false;
-  CorrectedResult result(wrap_a, wrap_b, dispatcher.inner_edges());
-  pair.m_algorithm->processCollision(&wrap_a, &wrap_b, info, &result);
-  return result.has_left_out();
-}
-
-bool has_inner_edges(const btBroadphasePair& pair, const InnerEdges& inner_edges) {
-  for (const btBroadphaseProxy* proxy : {pair.m_pProxy0, pair.m_pProxy1}) {
-    const auto& object = *static_cast<const btCollisionObject*>(proxy->m_clientObject);
-    if (object.isStaticOrKinematicObject() && inner_edges.concerns(object)) return true;
-  }
-  return false;
+bool has_inner_edges(const btCollisionObject& object, const InnerEdges& inner_edges) {
+  return object.isStaticOrKinematicObject() && inner_edges.concerns(object);
 }
 
 void near_callback(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
@@ -106,10 +85,29 @@ bool Dispatcher::find_contacts(btBroadphasePair& pair, const btDispatcherInfo& i
     pair.m_algorithm = nullptr;
     return false;
   }
-  const bool with_plane = is_plane(*pair.m_pProxy0) || is_plane(*pair.m_pProxy1);
-  if (with_plane && pair.m_algorithm != nullptr) drop_stale_points(*pair.m_algorithm);
-  if (has_inner_edges(pair, inner_edges_)) return find_corrected(pair, *this, info);
-  defaultNearCallback(pair, *this, info);
+  const auto& a = *static_cast<const btCollisionObject*>(pair.m_pProxy0->m_clientObject);
+  const auto& b = *static_cast<const btCollisionObject*>(pair.m_pProxy1->m_clientObject);
+  return needsCollision(&a, &b) && find_contacts_of_overlapping(pair, info);
+}
+
+bool Dispatcher::find_contacts_of_overlapping(btBroadphasePair& pair, const btDispatcherInfo& info) {
+  const auto& a = *static_cast<const btCollisionObject*>(pair.m_pProxy0->m_clientObject);
+  const auto& b = *static_cast<const btCollisionObject*>(pair.m_pProxy1->m_clientObject);
+  const btCollisionObjectWrapper wrap_a(nullptr, a.getCollisionShape(), &a, a.getWorldTransform(), -1, -1);
+  const btCollisionObjectWrapper wrap_b(nullptr, b.getCollisionShape(), &b, b.getWorldTransform(), -1, -1);
+  if (pair.m_algorithm == nullptr) {
+    pair.m_algorithm = findAlgorithm(&wrap_a, &wrap_b, nullptr, BT_CONTACT_POINT_ALGORITHMS);
+    if (pair.m_algorithm == nullptr) return false;
+  } else if (is_plane(a) || is_plane(b)) {
+    drop_stale_points(*pair.m_algorithm);
+  }
+  if (has_inner_edges(a, inner_edges_) || has_inner_edges(b, inner_edges_)) {
+    CorrectedResult result(wrap_a, wrap_b, inner_edges_);
+    pair.m_algorithm->processCollision(&wrap_a, &wrap_b, info, &result);
+    return result.has_left_out();
+  }
+  btManifoldResult result(&wrap_a, &wrap_b);
+  pair.m_algorithm->processCollision(&wrap_a, &wrap_b, info, &result);
   return false;
 }
 

@@ -30,6 +30,8 @@ class Dispatcher : public btCollisionDispatcher {
   /// keeps pairs that were near once, for times that differ from world to world. Returns true if points with inner
   /// edges were left out (inner_edges.h).
   bool find_contacts(btBroadphasePair& pair, const btDispatcherInfo& info);
+  /// Like find_contacts(), of a pair whose bounds overlap, whose bodies may touch, and of which one is awake.
+  bool find_contacts_of_overlapping(btBroadphasePair& pair, const btDispatcherInfo& info);
 
   btPersistentManifold* getNewManifold(const btCollisionObject* body0, const btCollisionObject* body1) override;
   void releaseManifold(btPersistentManifold* manifold) override;

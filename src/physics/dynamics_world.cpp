@@ -175,9 +175,21 @@ void DynamicsWorld::bound(btRigidBody& moving_static, const btTransform& until) 
 void DynamicsWorld::connect(btTypedConstraint& joint, int order, bool bodies_collide) {
   joint.setUserConstraintType(order);
   bullet_->world->addConstraint(&joint, !bodies_collide);
+  forget_whether_they_touch(joint);
 }
 
-void DynamicsWorld::disconnect(btTypedConstraint& joint) { bullet_->world->removeConstraint(&joint); }
+void DynamicsWorld::disconnect(btTypedConstraint& joint) {
+  bullet_->world->removeConstraint(&joint);
+  forget_whether_they_touch(joint);
+}
+
+/// The soft step notes in a pair whether joints keep its bodies from touching (soft/contacts.cpp).
+void DynamicsWorld::forget_whether_they_touch(btTypedConstraint& joint) {
+  btBroadphaseProxy* const a = joint.getRigidBodyA().getBroadphaseProxy();
+  btBroadphaseProxy* const b = joint.getRigidBodyB().getBroadphaseProxy();
+  if (a == nullptr || b == nullptr) return;
+  if (btBroadphasePair* const pair = bullet_->pairs.findPair(a, b)) pair->m_internalInfo1 = nullptr;
+}
 
 void DynamicsWorld::couple(const Coupling& coupling) { bullet_->world->couple(coupling); }
 

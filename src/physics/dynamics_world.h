@@ -85,6 +85,8 @@ class DynamicsWorld {
   ContactImpulses& contact_impulses();
 
  private:
+  void forget_whether_they_touch(btTypedConstraint& joint);
+
   struct Bullet;
   std::unique_ptr<Bullet> bullet_;
 };

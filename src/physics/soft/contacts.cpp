@@ -47,32 +47,47 @@ bool is_above(const btBroadphaseProxy& body, const btCollisionObject& plane) {
   return normal.dot(centre - on_plane) > normal.absolute().dot(half);
 }
 
-bool is_plane(const btCollisionObject& object) {
-  return object.getCollisionShape()->getShapeType() == STATIC_PLANE_PROXYTYPE;
+/// Only planes have bounds that large. Other proxies are not followed to their bodies, which would miss the cache.
+bool is_plane(const btBroadphaseProxy& proxy) {
+  constexpr btScalar kEndless_m = btScalar(1e12);
+  return proxy.m_aabbMax.x() > kEndless_m &&
+         body_of(proxy).getCollisionShape()->getShapeType() == STATIC_PLANE_PROXYTYPE;
+}
+
+bool boxes_overlap(const btBroadphasePair& pair) {
+  const btBroadphaseProxy &a = *pair.m_pProxy0, &b = *pair.m_pProxy1;
+  return TestAabbAgainstAabb2(a.m_aabbMin, a.m_aabbMax, b.m_aabbMin, b.m_aabbMax);
 }
 
 bool bounds_overlap(const btBroadphasePair& pair) {
   const btBroadphaseProxy &a = *pair.m_pProxy0, &b = *pair.m_pProxy1;
-  if (!TestAabbAgainstAabb2(a.m_aabbMin, a.m_aabbMax, b.m_aabbMin, b.m_aabbMax)) return false;
-  if (is_plane(body_of(a))) return !is_above(b, body_of(a));
-  return !is_plane(body_of(b)) || !is_above(a, body_of(b));
+  if (!boxes_overlap(pair)) return false;
+  if (is_plane(a)) return !is_above(b, body_of(a));
+  return !is_plane(b) || !is_above(a, body_of(b));
 }
 
-/// Slots of a pair's bodies. Kept in a field of the pair that Bullet does not use, because reading the bodies would
-/// miss the cache.
-struct Slots {
-  std::uint32_t a, b;
+/// What is known of a pair for as long as it lasts. Kept in a field of the pair that Bullet does not use, because
+/// reading the bodies would miss the cache. All 0: not known yet.
+struct PairNote {
+  static constexpr std::uint32_t kKnown = 1u << 31, kMayTouch = 1u << 30, kSlot = kMayTouch - 1;
 
-  bool are_noted() const { return a != b; }
+  std::uint32_t a = 0, b_and_flags = 0;  ///< slots of the bodies
+
+  bool is_known() const { return (b_and_flags & kKnown) != 0; }
+  /// False if a joint keeps the bodies from touching.
+  bool may_touch() const { return (b_and_flags & kMayTouch) != 0; }
+  std::uint32_t b() const { return b_and_flags & kSlot; }
 };
 
-Slots noted_slots(const btBroadphasePair& pair) { return std::bit_cast<Slots>(pair.m_internalInfo1); }
+PairNote noted(const btBroadphasePair& pair) { return std::bit_cast<PairNote>(pair.m_internalInfo1); }
 
-Slots slots_of(btBroadphasePair& pair) {
-  if (noted_slots(pair).are_noted()) return noted_slots(pair);
-  const Slots slots = {slot_of(body_of(*pair.m_pProxy0)), slot_of(body_of(*pair.m_pProxy1))};
-  pair.m_internalInfo1 = std::bit_cast<void*>(slots);
-  return slots;
+PairNote note_of(btBroadphasePair& pair) {
+  if (noted(pair).is_known()) return noted(pair);
+  const btCollisionObject &a = body_of(*pair.m_pProxy0), &b = body_of(*pair.m_pProxy1);
+  const bool may_touch = a.checkCollideWith(&b) && b.checkCollideWith(&a);
+  const PairNote note = {slot_of(a), slot_of(b) | PairNote::kKnown | (may_touch ? PairNote::kMayTouch : 0)};
+  pair.m_internalInfo1 = std::bit_cast<void*>(note);
+  return note;
 }
 
 SoftTouch touch_of(btPersistentManifold& manifold) {
@@ -171,25 +186,30 @@ void SoftContacts::look(List& list, btOverlappingPairCache& pairs, int first, in
                         btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
   btBroadphasePairArray& all = pairs.getOverlappingPairArray();
   const bool knows_sleepers = islands_.knows_sleepers();
-  const auto both_sleep = [this](const Slots& slots) { return islands_.sleeps(slots.a) && islands_.sleeps(slots.b); };
+  const auto both_sleep = [this](const PairNote& of) { return islands_.sleeps(of.a) && islands_.sleeps(of.b()); };
   const auto is_wanted = [&](int i) {
-    return i < last && !(knows_sleepers && noted_slots(all[i]).are_noted() && both_sleep(noted_slots(all[i])));
+    if (i >= last) return false;
+    const PairNote note = noted(all[i]);
+    return !note.is_known() || (note.may_touch() && !(knows_sleepers && both_sleep(note)));
   };
   for (int i = first; i < last; ++i) {
     core::Progress::mark_now_and_then(static_cast<std::size_t>(i));
     if (is_wanted(i + kPrefetchDistance)) prefetch_pair(all[i + kPrefetchDistance]);
-    if (is_wanted(i + kPrefetchDistance / 2)) prefetch_parts(all[i + kPrefetchDistance / 2], list.manifolds);
-    if (is_wanted(i + kPrefetchDistance / 4)) {
+    if (is_wanted(i + kPrefetchDistance / 2) && boxes_overlap(all[i + kPrefetchDistance / 2])) {
+      prefetch_parts(all[i + kPrefetchDistance / 2], list.manifolds);
+    }
+    if (is_wanted(i + kPrefetchDistance / 4) && boxes_overlap(all[i + kPrefetchDistance / 4])) {
       const btManifoldArray& manifolds = manifolds_of(all[i + kPrefetchDistance / 4], list.manifolds);
       for (int k = 0; k < manifolds.size(); ++k) prefetch_points(*manifolds[k]);
     }
-    const Slots slots = slots_of(all[i]);
-    if (both_sleep(slots)) {  // touches of sleepers are unchanged
+    const PairNote note = note_of(all[i]);
+    if (!note.may_touch()) continue;
+    if (both_sleep(note)) {  // touches of sleepers are unchanged
       if (!knows_sleepers) collect_of_sleepers(list, all[i]);
       continue;
     }
-    if (islands_.slept(slots.a) && islands_.slept(slots.b)) know_touches(list, all[i]);
-    const std::uint32_t sleeper = islands_.sleeps(slots.a) ? slots.a : islands_.sleeps(slots.b) ? slots.b : 0;
+    if (islands_.slept(note.a) && islands_.slept(note.b())) know_touches(list, all[i]);
+    const std::uint32_t sleeper = islands_.sleeps(note.a) ? note.a : islands_.sleeps(note.b()) ? note.b() : 0;
     const bool touched = sleeper != 0 && touch(all[i], list.manifolds);
     if (bounds_overlap(all[i])) {
       look(list, all[i], dispatcher, info);
@@ -201,25 +221,27 @@ void SoftContacts::look(List& list, btOverlappingPairCache& pairs, int first, in
 }
 
 void SoftContacts::add_woken(btOverlappingPairCache& pairs) {
-  add_touches_of_sleepers(pairs, [this](const Slots& s) { return islands_.is_woken(s.a) || islands_.is_woken(s.b); });
+  add_touches_of_sleepers(pairs, [this](const PairNote& of) {
+    return islands_.is_woken(of.a) || islands_.is_woken(of.b());
+  });
 }
 
 void SoftContacts::add_woken_guests(btOverlappingPairCache& pairs) {
   const auto is_woken_guest = [this](std::uint32_t slot) { return islands_.is_woken(slot) && islands_.is_guest(slot); };
-  add_touches_of_sleepers(pairs, [this, is_woken_guest](const Slots& s) {
-    return (is_woken_guest(s.a) && !islands_.is_woken(s.b)) || (is_woken_guest(s.b) && !islands_.is_woken(s.a));
+  add_touches_of_sleepers(pairs, [this, is_woken_guest](const PairNote& of) {
+    return (is_woken_guest(of.a) && !islands_.is_woken(of.b())) || (is_woken_guest(of.b()) && !islands_.is_woken(of.a));
   });
 }
 
-/// Adds the touches of pairs that slept at the start of the step, where wanted(slots) is true.
+/// Adds the touches of pairs that slept at the start of the step, where wanted(note) is true.
 template <class Wanted>
 void SoftContacts::add_touches_of_sleepers(btOverlappingPairCache& pairs, Wanted&& wanted) {
   btBroadphasePairArray& all = pairs.getOverlappingPairArray();
   List& list = lists_[0];
   const std::size_t before = list.touches.size();
   for (int i = 0; i < all.size(); ++i) {
-    const Slots slots = slots_of(all[i]);
-    if (islands_.sleeps(slots.a) && islands_.sleeps(slots.b) && wanted(slots)) collect(list, all[i]);
+    const PairNote note = note_of(all[i]);
+    if (islands_.sleeps(note.a) && islands_.sleeps(note.b()) && wanted(note)) collect(list, all[i]);
   }
   touches_.insert(touches_.end(), list.touches.begin() + static_cast<std::ptrdiff_t>(before), list.touches.end());
 }
@@ -234,7 +256,7 @@ void SoftContacts::look(List& list, btBroadphasePair& pair, btCollisionDispatche
   };
   btPersistentManifold* const before = only();
   if (before == nullptr || !keep_contacts(*before)) {
-    dispatcher.getNearCallback()(pair, dispatcher, info);
+    static_cast<Dispatcher&>(dispatcher).find_contacts_of_overlapping(pair, info);
     if (btPersistentManifold* const told = only()) note_contacts(*told);
   }
   const std::size_t touched = list.touches.size();
@@ -249,7 +271,6 @@ void SoftContacts::look_ahead(List& list, btBroadphasePair& pair) {
   const btCollisionObject &a = body_of(*pair.m_pProxy0), &b = body_of(*pair.m_pProxy1);
   const btVector3 way = this->way(a, gravity_) - this->way(b, gravity_);
   if (way.length2() < kLongWay_m * kLongWay_m || !a.hasContactResponse() || !b.hasContactResponse()) return;
-  if (!a.checkCollideWith(&b) || !b.checkCollideWith(&a)) return;
   if (const std::optional<SoftMeeting> meeting = meeting_ahead(a, b, way)) list.will_meet.push_back({&pair, *meeting});
 }
 
