@@ -68,12 +68,15 @@ Dispatcher::Dispatcher(btCollisionConfiguration& configuration, const InnerEdges
     registerCollisionCreateFunc(CUSTOM_POLYHEDRAL_SHAPE_TYPE, other, &hull_contacts_);
     registerCollisionCreateFunc(other, CUSTOM_POLYHEDRAL_SHAPE_TYPE, &hull_contacts_);
   }
+  const auto use_primitive = [this](int one, int other) {
+    registerCollisionCreateFunc(one, other, &primitive_contacts_);
+    registerCollisionCreateFunc(other, one, &primitive_contacts_);
+  };
+  use_primitive(SPHERE_SHAPE_PROXYTYPE, CAPSULE_SHAPE_PROXYTYPE);
+  use_primitive(CAPSULE_SHAPE_PROXYTYPE, CAPSULE_SHAPE_PROXYTYPE);
   for (const int round : {SPHERE_SHAPE_PROXYTYPE, CAPSULE_SHAPE_PROXYTYPE}) {
-    for (const int other : {SPHERE_SHAPE_PROXYTYPE, CAPSULE_SHAPE_PROXYTYPE, BOX_SHAPE_PROXYTYPE}) {
-      if (round == SPHERE_SHAPE_PROXYTYPE && other == SPHERE_SHAPE_PROXYTYPE) continue;
-      registerCollisionCreateFunc(round, other, &round_contacts_);
-      registerCollisionCreateFunc(other, round, &round_contacts_);
-    }
+    use_primitive(round, BOX_SHAPE_PROXYTYPE);
+    use_primitive(round, STATIC_PLANE_PROXYTYPE);
   }
 }
 

@@ -8,7 +8,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 
 #include "physics/hull_contacts.h"
-#include "physics/round_contacts.h"
+#include "physics/primitive_contacts.h"
 
 namespace aurasim::physics {
 
@@ -41,7 +41,7 @@ class Dispatcher : public btCollisionDispatcher {
   /// While this is set, all pairs get a manifold, also if they do not touch.
   void make_all_manifolds(bool wanted) {
     hull_contacts_.make_all_manifolds(wanted);
-    round_contacts_.make_all_manifolds(wanted);
+    primitive_contacts_.make_all_manifolds(wanted);
   }
 
  private:
@@ -49,7 +49,7 @@ class Dispatcher : public btCollisionDispatcher {
 
   const InnerEdges& inner_edges_;
   HullContactsMaker hull_contacts_;
-  RoundContactsMaker round_contacts_{kContactMargin};
+  PrimitiveContactsMaker primitive_contacts_{kContactMargin};
   std::size_t algorithm_bytes_;  ///< of the largest of Bullet's algorithms
   /// For manifolds and algorithms. Grows with the contacts: Bullet's own pools take 6 MB in a world without any.
   std::pmr::unsynchronized_pool_resource pools_;

@@ -208,7 +208,8 @@ std::optional<Chosen> same_as_before(std::span<const HullPoint> points, std::spa
   return same;
 }
 
-void reduce(std::span<const HullPoint> points, double margin_m, std::span<const ContactFeatures> before, HullPoints& to) {
+void reduce(std::span<const HullPoint> points, double margin_m, std::span<const ContactFeatures> before,
+            HullPoints& to) {
   Chosen chosen = choose(points, to.normal);
   const std::optional<Chosen> same = same_as_before(points, before);
   if (same && area_of(*same) >= kKeptArea * area_of(chosen) &&

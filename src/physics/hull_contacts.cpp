@@ -32,8 +32,7 @@ class HullContacts final : public btCollisionAlgorithm {
   void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b, const btDispatcherInfo&,
                         btManifoldResult* result) override {
     const btTransform X_AB = a->getWorldTransform().inverseTimes(b->getWorldTransform());
-    const std::optional<HullGap> closest =
-        closest_axis(faces_of(*a), faces_of(*b), X_AB, manifold_.margin_m(), last_);
+    const std::optional<HullGap> closest = closest_axis(faces_of(*a), faces_of(*b), X_AB, manifold_.margin_m(), last_);
     if (closest || maker_.makes_all_manifolds()) manifold_.make(*a, *b);
     if (manifold_.get() == nullptr) return;
     result->setPersistentManifold(manifold_.get());

@@ -125,7 +125,8 @@ RodPoint point_of_balls(const Rod& rod, const Rod& other, Shares at) {
     normal = rod.half.cross(other.half);
     const btScalar length2 = normal.length2();
     const bool crosses = length2 > kParallel * rod.half.length2() * other.half.length2();
-    normal = crosses ? normal / btSqrt(length2) : across(rod.half.length2() > other.half.length2() ? rod.half : other.half);
+    normal =
+        crosses ? normal / btSqrt(length2) : across(rod.half.length2() > other.half.length2() ? rod.half : other.half);
     if (normal.dot(rod.centre - other.centre) < 0) normal = -normal;
   }
   return {normal,
@@ -228,9 +229,8 @@ class OnBox {
   RodPoints outside(btScalar t, const btVector3& way) const {
     const int axis = way.absolute().maxAxis();
     const Over over = over_face(rod_, half_extents_, axis);
-    return chosen(rod_, ball_at(t, side_of(way, axis)), t, over.part, margin_, [&](btScalar end) {
-      return ball_at(end, end == over.part.from ? over.side_from : over.side_to);
-    });
+    return chosen(rod_, ball_at(t, side_of(way, axis)), t, over.part, margin_,
+                  [&](btScalar end) { return ball_at(end, end == over.part.from ? over.side_from : over.side_to); });
   }
 
   /// The side of a face beyond which a point is.
@@ -323,9 +323,8 @@ RodPoints rod_points(const Rod& rod, const Rod& other, double margin_m) {
   const Shares nearest = two.nearest();
   const RodPoint deepest = point_of_balls(rod, other, nearest);
   if (!(deepest.gap <= margin)) return {};
-  return chosen(rod, deepest, nearest.of_rod, two.along(), margin, [&](btScalar of_rod) {
-    return point_of_balls(rod, other, two.at(of_rod));
-  });
+  return chosen(rod, deepest, nearest.of_rod, two.along(), margin,
+                [&](btScalar of_rod) { return point_of_balls(rod, other, two.at(of_rod)); });
 }
 
 RodPoints rod_points(const Rod& rod, const btVector3& half_extents, double margin_m) {

@@ -27,8 +27,8 @@ struct RodPoint {
   btVector3 normal{0, 0, 0};  ///< of length 1, from the other shape to the rod
   btVector3 on_other{0, 0, 0};
   btScalar gap = 0;  ///< m; negative: overlap
-  /// `of_a`: the end of the rod, or 0 in between. `of_b`: the end of the other rod, or the side of the face at which the
-  /// rod leaves a box, or 0.
+  /// `of_a`: the end of the rod, or 0 in between. `of_b`: the end of the other rod, or the side of the face at which
+  /// the rod leaves a box, or 0.
   ContactFeatures features;
 };
 

@@ -7,10 +7,12 @@
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
+#include "core/keep_one_of_each.h"
 #include "core/progress.h"
 #include "physics/bullet_convert.h"
 #include "physics/construction.h"
@@ -271,14 +273,11 @@ void Simulation::note_moved() {
   if (++steps_since_snapshot_ > 1) notes_.for_snapshot.note_all();  // contacts of the step before are not known
   if (!world_.knows_moved() || std::exchange(will_stop_sleepers_, false)) return notes_.note_all();
   moved_count_ = world_.moved().size();
-  for (const btRigidBody* body : world_.moved()) {
-    const auto place = static_cast<std::size_t>(body->getUserIndex());
-    moved_.push_back(static_cast<std::uint32_t>(place));
-    notes_.note_moved(table_[place].id);
-  }
-  for (const btRigidBody* body : world_.called()) {
-    notes_.note(table_[static_cast<std::size_t>(body->getUserIndex())].id);
-  }
+  const auto place_of = [](const btRigidBody* body) { return static_cast<std::uint32_t>(body->getUserIndex()); };
+  for (const btRigidBody* body : world_.moved()) moved_.push_back(place_of(body));
+  sort_places(moved_);
+  for (const std::uint32_t place : moved_) notes_.note_moved(table_[place].id);
+  for (const btRigidBody* body : world_.called()) notes_.note(table_[place_of(body)].id);
   touched_.clear();
   world_.add_contacts_of_moved(touched_);
   const auto ref = [this](int index) -> core::ObjectRef {
@@ -287,6 +286,18 @@ void Simulation::note_moved() {
   for (const auto& [a, b] : touched_) {
     notes_.note_pair(ref(a), ref(b));
     if (!is_static(a)) moved_contacts_.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
+  }
+}
+
+/// Sorts places in the table, without duplicates. Uses marks for many, because that takes no comparisons.
+void Simulation::sort_places(std::vector<std::uint32_t>& places) {
+  constexpr std::size_t kBodiesOfPlace = 16;
+  if (kBodiesOfPlace * places.size() < table_.size()) return core::keep_one_of_each(places);
+  is_moved_.resize(table_.size());
+  for (const std::uint32_t place : places) is_moved_[place] = 1;
+  places.clear();
+  for (std::uint32_t place = 0; place < is_moved_.size(); ++place) {
+    if (std::exchange(is_moved_[place], 0) != 0) places.push_back(place);
   }
 }
 

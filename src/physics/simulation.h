@@ -167,6 +167,7 @@ class Simulation {
   void erase(const std::vector<bool>& leaving);
   void copy_changes(core::ChangedState& copy);
   void note_moved();
+  void sort_places(std::vector<std::uint32_t>& places);
   void note(core::BodyId id);
   void note_new(core::BodyId id);
   void note_all();

@@ -1,5 +1,5 @@
 // The manifold of a pair of shapes whose contact points are all found at once from the two poses (hull_contacts.h,
-// round_contacts.h).
+// primitive_contacts.h).
 //
 // A point is named by features of the two shapes, in the fields m_partId0 and m_partId1, which Bullet uses for meshes
 // only. A point with the features of one of the last step goes on with its impulses.

@@ -221,9 +221,8 @@ void SoftContacts::look(List& list, btOverlappingPairCache& pairs, int first, in
 }
 
 void SoftContacts::add_woken(btOverlappingPairCache& pairs) {
-  add_touches_of_sleepers(pairs, [this](const PairNote& of) {
-    return islands_.is_woken(of.a) || islands_.is_woken(of.b());
-  });
+  add_touches_of_sleepers(pairs,
+                          [this](const PairNote& of) { return islands_.is_woken(of.a) || islands_.is_woken(of.b()); });
 }
 
 void SoftContacts::add_woken_guests(btOverlappingPairCache& pairs) {

@@ -1,5 +1,4 @@
-// Contacts of balls and capsules with each other and with boxes against slow searches, and what they promise to the
-// step.
+// Contacts of balls and capsules against slow searches, and what they promise to the step.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "physics/plane_points.h"
 #include "physics/rod_points.h"
 #include "physics/scenes.h"
 
@@ -100,7 +100,7 @@ double gap_to_box(const Rod& rod, const Vec3& half_extents) {
   return least([&](double t) { return outside_of_box(from(rod.at(t)), half_extents); }) - rod.radius;
 }
 
-TEST(RoundContacts, RodsAreAsFarApartAsASlowSearchFinds) {
+TEST(PrimitiveContacts, RodsAreAsFarApartAsASlowSearchFinds) {
   std::mt19937_64 random(41);
   int touching = 0, apart = 0, two = 0;
   for (int i = 0; i < 4000; ++i) {
@@ -136,7 +136,7 @@ TEST(RoundContacts, RodsAreAsFarApartAsASlowSearchFinds) {
   EXPECT_GT(two, 50);
 }
 
-TEST(RoundContacts, TheOtherWayRoundRodsHaveTheSameNearestPoint) {
+TEST(PrimitiveContacts, TheOtherWayRoundRodsHaveTheSameNearestPoint) {
   std::mt19937_64 random(42);
   for (int i = 0; i < 1000; ++i) {
     SCOPED_TRACE(i);
@@ -151,7 +151,7 @@ TEST(RoundContacts, TheOtherWayRoundRodsHaveTheSameNearestPoint) {
   }
 }
 
-TEST(RoundContacts, ARodIsAsFarFromABoxAsASlowSearchFinds) {
+TEST(PrimitiveContacts, ARodIsAsFarFromABoxAsASlowSearchFinds) {
   std::mt19937_64 random(43);
   int touching = 0, apart = 0, two = 0, edges = 0;
   for (int i = 0; i < 4000; ++i) {
@@ -160,7 +160,8 @@ TEST(RoundContacts, ARodIsAsFarFromABoxAsASlowSearchFinds) {
     Rod rod = random_rod(random, i);
     Vec3 way = random_vector(random, 1).normalized();
     if (i % 3 == 0) way = Vec3::Unit(i % 9 / 3);
-    move_to(rod, way, uniform(random, -0.9 * rod.radius, 0.04), [&](const Rod& r) { return gap_to_box(r, half_extents); });
+    move_to(rod, way, uniform(random, -0.9 * rod.radius, 0.04),
+            [&](const Rod& r) { return gap_to_box(r, half_extents); });
     const double gap = gap_to_box(rod, half_extents);
     const RodPoints found = rod_points(rod, vector(half_extents), kMargin);
     if (found.count == 0) {
@@ -192,7 +193,7 @@ TEST(RoundContacts, ARodIsAsFarFromABoxAsASlowSearchFinds) {
 }
 
 /// The segment of the rod is in the box: pushed out by the overlap it touches the box, and no way out is shorter.
-TEST(RoundContacts, ARodInABoxLeavesItOnTheShortestWay) {
+TEST(PrimitiveContacts, ARodInABoxLeavesItOnTheShortestWay) {
   std::mt19937_64 random(44);
   int faces = 0, edges = 0;
   for (int i = 0; i < 3000; ++i) {
@@ -228,7 +229,7 @@ Rod along_x(double x, double z, double tilt_rad = 0) {
   return {btVector3(x, 0, z), btVector3(std::cos(tilt_rad), 0, -std::sin(tilt_rad)), 0.25};
 }
 
-TEST(RoundContacts, ACapsuleThatLiesHasTwoPoints) {
+TEST(PrimitiveContacts, ACapsuleThatLiesHasTwoPoints) {
   const btVector3 table(2, 2, 0.5);
   for (const double gap : {0.0, 0.01, -0.01}) {
     SCOPED_TRACE(gap);
@@ -251,7 +252,7 @@ TEST(RoundContacts, ACapsuleThatLiesHasTwoPoints) {
   EXPECT_NEAR(tilted.points[1].gap - tilted.points[0].gap, -2 * std::sin(0.005), 1e-12);
 }
 
-TEST(RoundContacts, ACapsuleOverAnEdgeTouchesItAndTheFace) {
+TEST(PrimitiveContacts, ACapsuleOverAnEdgeTouchesItAndTheFace) {
   const btVector3 table(2, 2, 0.5);
   const RodPoints level = rod_points(along_x(1.5, 0.75), table, kMargin);
   ASSERT_EQ(level.count, 2);
@@ -265,7 +266,7 @@ TEST(RoundContacts, ACapsuleOverAnEdgeTouchesItAndTheFace) {
   EXPECT_NEAR(nearest->on_other.x(), 2, 1e-12);
 }
 
-TEST(RoundContacts, ACapsuleThatStandsOrCrossesHasOnePoint) {
+TEST(PrimitiveContacts, ACapsuleThatStandsOrCrossesHasOnePoint) {
   const Rod stands{btVector3(0, 0, 1.75), btVector3(0, 0, 1), 0.25};
   EXPECT_EQ(rod_points(stands, btVector3(2, 2, 0.5), kMargin).count, 1);
   EXPECT_EQ(rod_points(stands, {btVector3(0, 0, -0.75), btVector3(0, 0, 1), 0.25}, kMargin).count, 1);
@@ -276,11 +277,14 @@ TEST(RoundContacts, ACapsuleThatStandsOrCrossesHasOnePoint) {
   EXPECT_NEAR(found.points[0].on_other.z(), 0.25, 1e-12);
 }
 
-TEST(RoundContacts, AxesThatMeetHaveANormalAllTheSame) {
+TEST(PrimitiveContacts, AxesThatMeetHaveANormalAllTheSame) {
   const Rod ball{btVector3(0, 0, 0), btVector3(0, 0, 0), 0.25};
   const Rod crosses{btVector3(0, 0, 0), btVector3(0, 1, 0), 0.25};
-  for (const auto& [one, other] : {std::pair{ball, ball}, {ball, along_x(0, 0)}, {along_x(0, 0), along_x(0, 0)},
-                                   {along_x(0, 0), along_x(1, 0)}, {crosses, along_x(0, 0)}}) {
+  for (const auto& [one, other] : {std::pair{ball, ball},
+                                   {ball, along_x(0, 0)},
+                                   {along_x(0, 0), along_x(0, 0)},
+                                   {along_x(0, 0), along_x(1, 0)},
+                                   {crosses, along_x(0, 0)}}) {
     const RodPoints found = rod_points(one, other, kMargin);
     ASSERT_GT(found.count, 0);
     for (const RodPoint& point : all(found)) {
@@ -292,11 +296,39 @@ TEST(RoundContacts, AxesThatMeetHaveANormalAllTheSame) {
   }
 }
 
-TEST(RoundContacts, ABodyWhosePoseIsNotFiniteTouchesNothing) {
+TEST(PrimitiveContacts, ABodyWhosePoseIsNotFiniteTouchesNothing) {
   for (const double x : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     EXPECT_EQ(rod_points(along_x(x, 0), along_x(0, 0), kMargin).count, 0);
     EXPECT_EQ(rod_points(along_x(x, 0), btVector3(1, 1, 1), kMargin).count, 0);
   }
+}
+
+TEST(PrimitiveContacts, PointsOnAPlaneAreTheEndsThatAreNear) {
+  std::mt19937_64 random(45);
+  int ends[3] = {};
+  for (int i = 0; i < 3000; ++i) {
+    SCOPED_TRACE(i);
+    const HalfSpace plane{vector(random_vector(random, 1).normalized()), uniform(random, -3, 3)};
+    Rod rod = random_rod(random, i);
+    if (i % 3 == 0) rod.half -= plane.normal * rod.half.dot(plane.normal);  // it lies
+    const double wanted = uniform(random, -0.2, 0.04);
+    const double low = std::min(plane.above(rod.at(-1)), plane.above(rod.at(1))) - rod.radius;
+    rod.centre += plane.normal * (wanted - low);
+    const PlanePoints found = plane_points(rod, plane, kMargin);
+    ASSERT_EQ(found.count > 0, wanted <= kMargin);
+    double deepest = kMargin;
+    for (const PlanePoint& point : std::span(found.points).first(static_cast<std::size_t>(found.count))) {
+      ASSERT_NEAR(plane.above(point.on_plane), 0, 1e-9);
+      const btVector3 centre = point.on_plane + plane.normal * (point.gap + rod.radius);
+      ASSERT_LT(distance_from_segment(centre, rod), 1e-9);
+      deepest = std::min(deepest, double{point.gap});
+    }
+    if (found.count > 0) {
+      ASSERT_NEAR(deepest, wanted, 1e-9);
+    }
+    ++ends[found.count];
+  }
+  for (const int count : ends) EXPECT_GT(count, 100);
 }
 
 Settings soft() {
@@ -319,7 +351,7 @@ core::Scene scene_on_a_table(const core::Shape& shape) {
   return scene;
 }
 
-TEST(RoundContacts, ACapsuleComesToRestOnABox) {
+TEST(PrimitiveContacts, ACapsuleComesToRestOnABox) {
   RegionWorld world(scene_on_a_table(core::Capsule{0.2, 0.8}), soft());
   core::BodyRecord capsule = body(1, 0, {0, 0, 1.6});
   capsule.R_WB = Eigen::AngleAxisd(1.3, Vec3::UnitY()).toRotationMatrix();

@@ -1,16 +1,17 @@
-// The contacts of balls and capsules with each other and with boxes, also as parts of compounds: all points of a
-// manifold at once, in closed form (rod_points.h). Two balls are left to Bullet, whose routine is as good.
+// The contacts of balls and capsules with each other, with boxes and with planes, also as parts of compounds: all
+// points of a manifold at once, in closed form (rod_points.h, plane_points.h). Two balls are left to Bullet, whose
+// routine is as good.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionCreateFunc.h>
 
 namespace aurasim::physics {
 
-/// Makes the algorithms of pairs of a ball or capsule with a ball, capsule or box.
-class RoundContactsMaker final : public btCollisionAlgorithmCreateFunc {
+/// Makes the algorithms of pairs of a ball or capsule with a ball, capsule, box or plane.
+class PrimitiveContactsMaker final : public btCollisionAlgorithmCreateFunc {
  public:
   /// `margin_m`: largest gap of a contact. Contacts of small bodies have smaller gaps.
-  explicit RoundContactsMaker(double margin_m) : margin_(margin_m) {}
+  explicit PrimitiveContactsMaker(double margin_m) : margin_(margin_m) {}
 
   /// While this is set, pairs get a manifold also if they do not touch.
   void make_all_manifolds(bool wanted) { makes_all_manifolds_ = wanted; }
