@@ -43,6 +43,11 @@ void switch_intraprocess_delivery_off() {
   eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(library);
 }
 
+template <class Generated>
+TypeSupport guarded(bool announces) {
+  return TypeSupport(new messages::GuardedType<Generated>(announces));
+}
+
 }  // namespace
 
 Domain::Domain(const Settings& settings)
@@ -74,7 +79,7 @@ Domain::Domain(const Settings& settings)
   }
   guard_->set_own(prefix_of(participant_->guid().guidPrefix));
   speakers_.set_self(participant_->guid().guidPrefix);
-  register_types();
+  register_types(settings.announces_types);
   liveliness_ = std::make_unique<LivelinessAsserter>(settings.hang_limit, settings.show_life);
 }
 
@@ -86,24 +91,24 @@ void Domain::Leave::operator()(eprosima::fastdds::dds::DomainParticipant* partic
   DomainParticipantFactory::get_instance()->delete_participant(participant);
 }
 
-void Domain::register_types() {
+void Domain::register_types(bool announces) {
   const std::array types = {
-      TypeSupport(new messages::GuardedType<wire::AuraBatchPubSubType>()),
-      TypeSupport(new messages::GuardedType<wire::MigrationPubSubType>()),
-      TypeSupport(new messages::GuardedType<wire::MigrationAckPubSubType>()),
-      TypeSupport(new messages::GuardedType<wire::NodeStatusPubSubType>()),
-      TypeSupport(new messages::GuardedType<wire::RegionMapPubSubType>()),
-      TypeSupport(new messages::GuardedType<wire::RunControlPubSubType>()),
-      TypeSupport(new messages::GuardedType<wire::ReplicaPubSubType>()),
-      TypeSupport(new messages::GuardedType<wire::CommandPubSubType>()),
-      TypeSupport(new messages::GuardedType<wire::CommandReplyPubSubType>()),
-      TypeSupport(new messages::GuardedType<wire::MeshShapePubSubType>()),
-      TypeSupport(new messages::GuardedType<wire::ClusterGraphPubSubType>()),
-      TypeSupport(new messages::GuardedType<wire::CheckpointPubSubType>()),
-      TypeSupport(new messages::GuardedType<wire::SeamParcelPubSubType>()),
-      TypeSupport(new messages::GuardedType<wire::SetpointsPubSubType>()),
-      TypeSupport(new messages::GuardedType<wire::InterestPubSubType>()),
-      TypeSupport(new messages::GuardedType<wire::ObservationPubSubType>()),
+      guarded<wire::AuraBatchPubSubType>(announces),
+      guarded<wire::MigrationPubSubType>(announces),
+      guarded<wire::MigrationAckPubSubType>(announces),
+      guarded<wire::NodeStatusPubSubType>(announces),
+      guarded<wire::RegionMapPubSubType>(announces),
+      guarded<wire::RunControlPubSubType>(announces),
+      guarded<wire::ReplicaPubSubType>(announces),
+      guarded<wire::CommandPubSubType>(announces),
+      guarded<wire::CommandReplyPubSubType>(announces),
+      guarded<wire::MeshShapePubSubType>(announces),
+      guarded<wire::ClusterGraphPubSubType>(announces),
+      guarded<wire::CheckpointPubSubType>(announces),
+      guarded<wire::SeamParcelPubSubType>(announces),
+      guarded<wire::SetpointsPubSubType>(announces),
+      guarded<wire::InterestPubSubType>(announces),
+      guarded<wire::ObservationPubSubType>(announces),
   };
   for (const TypeSupport& type : types) {
     if (type.register_type(participant_.get()) != ReturnCode_t::RETCODE_OK) {

@@ -77,7 +77,7 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
                               eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
   void on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
                                eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
-  void register_types();
+  void register_types(bool announces);
 
   Wakeup wakeup_;
   Profiles profiles_;

@@ -27,9 +27,10 @@ class GuardedType final : public Generated, public HasPartFields {
  public:
   using Message = typename Generated::type;
 
-  GuardedType() {
+  /// `announces`: each endpoint of the type announces its TypeObject, with which generic tools print samples.
+  explicit GuardedType(bool announces = true) {
     this->auto_fill_type_information(false);  // CycloneDDS 0.10.2 rejects endpoints that announce it
-    this->auto_fill_type_object(true);        // generic tools print samples with it
+    this->auto_fill_type_object(announces);
   }
 
   const PartFields* part_fields() const override {

@@ -34,6 +34,7 @@ dds::Settings settings_of_node(const config::Launch& launch, const NodeOptions& 
                                             setup::member_for_node(launch, options.as, options.region));
   const bool is_watched = options.has_launcher && options.heartbeat >= 0;
   settings.believes_silence = !is_watched;
+  settings.announces_types = options.region == core::RegionId{0};
   settings.show_life = [heartbeat = host::Heartbeat(options.heartbeat)] { heartbeat.beat(); };
   return settings;
 }
