@@ -18,6 +18,7 @@
 #include "host/other_role.h"
 #include "host/spawn.h"
 #include "host/stop_signal.h"
+#include "messages/status_period.h"
 #include "setup/arguments.h"
 #include "setup/key_choice.h"
 #include "setup/launch_setup.h"
@@ -30,7 +31,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kRound = 50ms;
-constexpr auto kStatusPeriod = 100ms;
 
 struct SpareArguments {
   command_line::FileArguments files;
@@ -98,7 +98,7 @@ class Spare {
   /// too.
   void publish() {
     const auto now = std::chrono::steady_clock::now();
-    if (now < published_ + kStatusPeriod) return;
+    if (now < published_ + messages::status_period(launch_.regions.size())) return;
     published_ = now;
     control_.publish_status(status_);
   }

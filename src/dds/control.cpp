@@ -27,6 +27,8 @@ constexpr std::size_t kMostRequests = 1U << 16U;
 constexpr std::size_t kMostWaiting = 64;
 constexpr auto kUntilKnown = std::chrono::seconds(3);
 constexpr auto kLongAgo = std::chrono::seconds(1);
+/// Longest time between two looks at the roster while nothing has come. Silence and deaths show by time alone.
+constexpr auto kLookEvery = std::chrono::milliseconds(20);
 
 struct HeardCommand {
   messages::RunCommand command;
@@ -55,6 +57,7 @@ struct ControlBus::Impl {
   void take_statuses();
   void note(messages::Status status, const Origin& origin);
   NodeRoster& look();
+  bool has_news();
   std::string problem_with(const messages::RunCommand& command, const Origin& origin) const;
   void judge(HeardCommand heard, std::vector<messages::RunCommand>& commands);
   bool remember(std::uint64_t request, const Guid& sender);
@@ -81,6 +84,8 @@ struct ControlBus::Impl {
   std::map<std::uint64_t, Guid> requests;  ///< requests seen or sent, and their writers
   std::vector<HeardCommand> waiting;  ///< commands that only nodes may send, kept until their sender is known to be one
   std::deque<std::uint64_t> request_sequence;  ///< oldest first
+  std::uint64_t seen_changes = 0;              ///< of the status reader's watch, at the last look
+  std::chrono::steady_clock::time_point next_look;
   RateLimit<Guid> against_statuses{1, 1};
   RateLimit<ProcessPrefix> asked{kWordsASecond, kWordsAtOnce};
   messages::WireErrors refused;
@@ -129,11 +134,22 @@ void ControlBus::Impl::note(messages::Status fresh, const Origin& origin) {
   }
 }
 
+/// Looks at the roster if there is news, because a look costs time that grows with the number of nodes, and the loops
+/// of a process ask several times in each round.
 NodeRoster& ControlBus::Impl::look() {
   participant.progress();
   take_statuses();
-  roster.look(status_reader.watch().writers());
+  if (has_news()) roster.look(status_reader.watch().writers());
   return roster;
+}
+
+bool ControlBus::Impl::has_news() {
+  const auto now = std::chrono::steady_clock::now();
+  const std::uint64_t changes = status_reader.watch().changes();
+  if (!roster.has_news() && changes == seen_changes && now < next_look) return false;
+  seen_changes = changes;
+  next_look = now + kLookEvery;
+  return true;
 }
 
 bool ControlBus::Impl::remember(std::uint64_t request, const Guid& sender) {

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "messages/status_period.h"
+
 namespace aurasim::dds {
 
 using core::RegionId;
@@ -27,8 +29,8 @@ std::uint16_t host_of(const Guid& guid) {
   return static_cast<std::uint16_t>(guid.guidPrefix.value[2] << 8 | guid.guidPrefix.value[3]);
 }
 
-/// A process without a status for this long shows no life. Statuses come ten times a second.
-constexpr auto kShowsNoLife = std::chrono::milliseconds(300);
+/// A process shows no life when no status has come for so many periods.
+constexpr int kShowsNoLife = 3;
 
 /// True when a process acts as a node. A process that only waits does no harm; a successor, or a second launch of the
 /// same file by mistake, does.
@@ -83,6 +85,7 @@ bool NodeRoster::has_room_for(RegionId region) const {
 
 void NodeRoster::note(messages::Status fresh, const Origin& origin) {
   if (!has_room_for(fresh.region)) return;
+  has_news_ = true;
   std::vector<Received>& of_region = received_[fresh.region];
   auto found = std::ranges::find(of_region, origin.writer, &Received::writer);
   if (found == of_region.end()) {
@@ -97,6 +100,7 @@ void NodeRoster::note(messages::Status fresh, const Origin& origin) {
 }
 
 void NodeRoster::look(const std::vector<RemoteWriter>& writers) {
+  has_news_ = false;
   for (auto& [region, of_region] : received_) {
     for (Received& one : of_region) {
       if (claimed_.contains(one.seen.status.process) && shows_no_life(one)) dead_.insert(one.seen.status.process);
@@ -130,10 +134,12 @@ bool NodeRoster::is_lost(const Received& one, const RemoteWriter* writer) const 
   return !settings_.believes_silence && writer->silent_since && shows_no_life(one);
 }
 
-/// On this host the operating system is asked whether the process exists. Elsewhere a process that has published
-/// nothing for kShowsNoLife shows no life.
+/// On this host the operating system is asked whether the process exists. Elsewhere its statuses decide.
 bool NodeRoster::shows_no_life(const Received& one) const {
-  if (!settings_.stays_on_this_host) return std::chrono::steady_clock::now() > one.seen.seen + kShowsNoLife;
+  if (!settings_.stays_on_this_host) {
+    const auto limit = kShowsNoLife * messages::status_period(settings_.region_count);
+    return std::chrono::steady_clock::now() > one.seen.seen + limit;
+  }
   const auto pid = static_cast<::pid_t>(one.seen.status.pid);
   return pid <= 0 || (::kill(pid, 0) != 0 && errno == ESRCH);
 }
@@ -188,6 +194,7 @@ bool NodeRoster::receive_death(std::uint64_t process) {
     if (meant == of_region.end()) continue;
     if (settings_.stays_on_this_host && !shows_no_life(*meant)) return false;
     if (claimed_.size() < kMostClaims) claimed_.insert(process);
+    has_news_ = true;
   }
   return true;
 }

@@ -35,6 +35,8 @@ class NodeRoster {
   /// Returns why `status` cannot be a node's status of itself. Empty: it can.
   std::string problem_with(const messages::Status& status, const Origin& origin) const;
   void note(messages::Status status, const Origin& origin);
+  /// True if a status or the report of a death has come since the last look.
+  bool has_news() const { return has_news_; }
   /// Updates which proofs of life have ended, and which status counts for each region.
   void look(const std::vector<RemoteWriter>& writers);
 
@@ -45,7 +47,10 @@ class NodeRoster {
   /// Spares: processes that wait for a region of this run, as of the last look().
   std::vector<messages::Status> spares() const;
 
-  void hold_for_dead(std::uint64_t process) { dead_.insert(process); }
+  void hold_for_dead(std::uint64_t process) {
+    dead_.insert(process);
+    has_news_ = true;
+  }
   /// Handles a report that `process` has died, which is believed once it shows no life. Returns false when it shows
   /// some.
   bool receive_death(std::uint64_t process);
@@ -73,6 +78,7 @@ class NodeRoster {
 
   RosterSettings settings_;
   Speakers& speakers_;
+  bool has_news_ = false;
   std::map<core::RegionId, std::vector<Received>> received_;  ///< processes in the order of their first samples
   std::map<core::RegionId, Guid> publishers_;
   std::map<core::RegionId, messages::SeenStatus> statuses_;

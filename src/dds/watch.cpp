@@ -27,6 +27,7 @@ void ReaderWatch::on_subscription_matched(eprosima::fastdds::dds::DataReader*,
   const Guid guid = iHandle2GUID(status.last_publication_handle);
   {
     const std::lock_guard lock(mutex_);
+    ++changes_;
     if (status.current_count_change > 0) {
       RemoteWriter writer;
       writer.guid = guid;
@@ -50,6 +51,7 @@ void ReaderWatch::on_liveliness_changed(eprosima::fastdds::dds::DataReader*,
     if (writer == nullptr || status.alive_count_change == 0) {
       return;
     }
+    ++changes_;
     writer->alive = status.alive_count_change > 0;
     writer->silent_since.reset();
     if (!writer->alive) {
@@ -84,6 +86,11 @@ bool ReaderWatch::any_matched(const std::optional<ProcessPrefix>& node) const {
   return std::ranges::any_of(writers_, [&](const RemoteWriter& writer) {
     return writer.matched && (!node || writer.guid.guidPrefix == *node);
   });
+}
+
+std::uint64_t ReaderWatch::changes() const {
+  const std::lock_guard lock(mutex_);
+  return changes_;
 }
 
 RemoteWriter ReaderWatch::judged(RemoteWriter writer) const {

@@ -61,6 +61,8 @@ class ReaderWatch final : public eprosima::fastdds::dds::DataReaderListener {
   RemoteWriter latest(const std::optional<ProcessPrefix>& node = {}) const;
   /// True when a writer is matched; with `node`, a writer of that process.
   bool any_matched(const std::optional<ProcessPrefix>& node = {}) const;
+  /// Number of matches, ends of matches, and changes of a proof of life so far.
+  std::uint64_t changes() const;
 
  private:
   RemoteWriter* find_matched(const Guid& guid);
@@ -73,6 +75,7 @@ class ReaderWatch final : public eprosima::fastdds::dds::DataReaderListener {
   mutable std::mutex mutex_;
   std::vector<RemoteWriter> writers_;
   std::uint64_t order_ = 0;
+  std::uint64_t changes_ = 0;
 };
 
 /// Listener of a writer. Thread-safe.

@@ -321,7 +321,7 @@ void Launcher::stop_all() {
     signal_all(SIGINT);
   }
   const auto begin = Clock::now();
-  std::vector<process::NodeEnding> endings(children_.size(), process::NodeEnding(begin));
+  std::vector<process::NodeEnding> endings(children_.size(), process::NodeEnding(begin, children_.size()));
   int presses = host::stop_requests();
   bool said = false;
   while (any_running()) {

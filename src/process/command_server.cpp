@@ -11,6 +11,7 @@
 #include "config/meshes.h"
 #include "core/static_moves.h"
 #include "cut/saved_world.h"
+#include "messages/status_period.h"
 #include "node/scene_additions.h"
 #include "steering/ask.h"
 #include "steering/command_limits.h"
@@ -22,8 +23,8 @@ using namespace std::chrono_literals;
 
 constexpr auto kPatienceForMesh = 15s;
 constexpr auto kLongestUnanswered = 2s;
-constexpr double kLongestShown_s = 0.5;     ///< no observer shows older states
-constexpr auto kStatusAge = 300ms;          ///< time after a command in which every node publishes which meshes it has
+constexpr double kLongestShown_s = 0.5;  ///< no observer shows older states
+constexpr int kStatusesOfAll = 3;  ///< status periods after a command in which every node says which meshes it has
 constexpr std::size_t kMostInAState = 300;  ///< commands that become orders in one state, at most
 constexpr std::size_t kTextWeighs = 20;
 /// Limits of the clients' meshes that a node keeps.
@@ -131,7 +132,8 @@ void CommandServer::take_rate(const core::Command& command, const core::SetRate&
 
 /// True if every live node has published, since the command came, that it has this mesh.
 bool CommandServer::is_everywhere(std::uint64_t hash, const Asked& asked, const RunView& run) {
-  return Clock::now() >= asked.since + kStatusAge && mesh_reader_.mesh(hash) != nullptr && run.lacking(hash).empty();
+  const auto until_all_say = kStatusesOfAll * messages::status_period(launch_.regions.size());
+  return Clock::now() >= asked.since + until_all_say && mesh_reader_.mesh(hash) != nullptr && run.lacking(hash).empty();
 }
 
 /// Waits until a mesh has reached all nodes, and refuses the command after some seconds.

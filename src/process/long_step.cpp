@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kLongStep = 2s;  // statuses come ten times a second
+constexpr auto kLongStep = 2s;  // statuses come at least once a second
 constexpr auto kLogAfter = 10s;
 
 /// How long the node has computed its step: the time since its last status, which it published before the step.

@@ -5,8 +5,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kStopGently = 900ms;        // time for a node to reach the state in which all stop
-constexpr auto kStandstill = 500ms;        // extended while its step grows at least so often
+constexpr auto kStopGently = 900ms;        // time for a node to reach the state in which all stop; longer if it gets on
 constexpr auto kStopSurely = 1600ms;       // a node without sign of life is killed after this
 constexpr auto kSilence = 3s;              // no sign of life: lost, and no status for so long
 constexpr auto kPatienceWithEnding = 30s;  // patience with a node that shows life
@@ -33,7 +32,7 @@ bool NodeEnding::is_stuck(Clock::time_point now, const messages::SeenStatus* see
     step_ = seen->status.step;
     moved_ = now;
   }
-  return now - begin_ > kStopGently && now - moved_ > kStandstill;
+  return now - begin_ > kStopGently && now - moved_ > standstill_;
 }
 
 }  // namespace aurasim::process

@@ -66,7 +66,7 @@ NodeRuntime::NodeRuntime(const config::Launch& the_launch, const NodeOptions& th
       saving(launch, options),
       records(options.report, options.region),
       notices(options.region, node::read_clocks()),
-      status(identity_of_node(launch, options), Clock::now()),
+      status(identity_of_node(launch, options), Clock::now(), launch.regions.size()),
       schedule(launch.step_s(), launch.time.pace == config::Pace::kWall, options.steps),
       start(options.region, launch.regions.size()),
       leaving(options.region, status.content().process),

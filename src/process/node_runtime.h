@@ -124,6 +124,7 @@ struct NodeRuntime {
   void publish(const std::string& text = {});
   /// Publishes the status of a node that computes, if its period is over.
   void publish_running();
+  Awaited awaited_of_status() const;
   /// Simulated seconds per second since the world began, pauses left out.
   double real_time_factor() const;
 

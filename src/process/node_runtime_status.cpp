@@ -9,7 +9,8 @@
 namespace aurasim::process {
 
 void NodeRuntime::publish_running() {
-  if (!status.period_is_over(Clock::now())) return;
+  if (const auto now = Clock::now(); !status.period_is_over(now) && !status.is_awaited(awaited_of_status(), now))
+    return;
   status.note_node(*node);
   status.content().real_time_factor = real_time_factor();
   notices.note_clock(node::read_clocks(), node->current_step());
@@ -17,19 +18,25 @@ void NodeRuntime::publish_running() {
   publish(notices.text());
 }
 
+Awaited NodeRuntime::awaited_of_status() const {
+  const bool waits = phase == NodePhase::kRecovering || phase == NodePhase::kSpare;
+  return {waits ? restoration.waits_in() : generation, schedule.holds_at(),
+          phase == NodePhase::kPaused ? node->current_step() : 0};
+}
+
 void NodeRuntime::publish(const std::string& text) {
   const auto now = Clock::now();
   const bool is_cut_off = phase == NodePhase::kRecovering && fence.is_cut_off();
   const messages::NodeState state = is_cut_off ? messages::NodeState::kCutOff : state_of(phase).value();
-  if (!status.is_due(state, now)) return;
-  status.note_published(state, now);
+  const Awaited awaited = awaited_of_status();
+  if (!status.is_due(state, now) && !status.is_awaited(awaited, now)) return;
+  status.note_published(state, awaited, now);
   note_strangers();
   messages::Status& content = status.content();
-  content.holds_at = schedule.holds_at();
+  content.holds_at = awaited.holds_at;
+  content.generation = awaited.generation;
   content.rate = schedule.rate();
   content.text = text;
-  const bool waits = phase == NodePhase::kRecovering || phase == NodePhase::kSpare;
-  content.generation = waits ? restoration.waits_in() : generation;
   content.step = node ? node->current_step() : 0;
   // In a pause, later states are computed only on the way to a redo. Nobody else sees them.
   if (node && schedule.holds_at() && node->is_going_back()) content.step = std::min(content.step, *schedule.holds_at());

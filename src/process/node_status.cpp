@@ -12,8 +12,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kStatusPeriod = 100ms;
 constexpr auto kWindow = 1s;
+constexpr auto kAwaitedPeriod = messages::status_period(1);  ///< between two statuses that others wait for
 
 messages::Durations summary_of(std::vector<double>& values) {
   return {records::percentile(values, 0.5), records::percentile(values, 0.99), records::percentile(values, 1)};
@@ -42,6 +42,7 @@ void FrameWindow::summarize(messages::Status& status) {
 }
 
 void NodeStatus::use_regions(const config::Launch& launch) {
+  period_ = messages::status_period(launch.regions.size());
   status_.map_version = launch.regions.version();
   status_.footprint = launch.regions.region(status_.region);
 }
@@ -95,14 +96,19 @@ std::uint64_t NodeStatus::refused_of(core::RegionId region) const {
   return entry == status_.refused.end() ? 0 : entry->second;
 }
 
-bool NodeStatus::period_is_over(Clock::time_point now) const { return now - published_ >= kStatusPeriod; }
+bool NodeStatus::period_is_over(Clock::time_point now) const { return now - published_ >= period_; }
 
 bool NodeStatus::is_due(messages::NodeState state, Clock::time_point now) const {
   return state != status_.state || period_is_over(now);
 }
 
-void NodeStatus::note_published(messages::NodeState state, Clock::time_point now) {
+bool NodeStatus::is_awaited(const Awaited& awaited, Clock::time_point now) const {
+  return awaited != awaited_ && now - published_ >= kAwaitedPeriod;
+}
+
+void NodeStatus::note_published(messages::NodeState state, const Awaited& awaited, Clock::time_point now) {
   published_ = now;
+  awaited_ = awaited;
   status_.state = state;
 }
 

@@ -3,11 +3,14 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "config/launch.h"
 #include "messages/control_messages.h"
+#include "messages/status_period.h"
 #include "node/node.h"
 #include "node/step_report.h"
 
@@ -30,12 +33,21 @@ class FrameWindow {
   std::vector<double> frame_, physics_, protocol_, transport_, exchange_;
 };
 
+/// What others wait for in a status, beside the node's state.
+struct Awaited {
+  core::Generation generation = 0;
+  std::optional<core::Step> holds_at;
+  core::Step stands_in = 0;  ///< state of a pause; 0: no pause
+  bool operator==(const Awaited&) const = default;
+};
+
 class NodeStatus {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// `identity`: fields of the status that stay the same as long as the process lives.
-  NodeStatus(const messages::Status& identity, Clock::time_point now) : status_(identity), window_(now) {}
+  /// `identity`: fields of the status that stay the same as long as the process lives. `regions`: number of the run's.
+  NodeStatus(const messages::Status& identity, Clock::time_point now, std::size_t regions = 1)
+      : status_(identity), period_(messages::status_period(regions)), window_(now) {}
 
   const messages::Status& content() const { return status_; }
   messages::Status& content() { return status_; }
@@ -62,17 +74,21 @@ class NodeStatus {
 
   /// True if some time has passed since the last status.
   bool period_is_over(Clock::time_point now) const;
+  /// True if what others wait for differs from the last status, and that was some time ago. A period may be longer.
+  bool is_awaited(const Awaited& awaited, Clock::time_point now) const;
   /// True if a status is due: its period is over, or the node's state has changed.
   bool is_due(messages::NodeState state, Clock::time_point now) const;
   /// The next status is due at once, because others wait for it.
   void make_due() { published_ = {}; }
   /// A status with this state is published now.
-  void note_published(messages::NodeState state, Clock::time_point now);
+  void note_published(messages::NodeState state, const Awaited& awaited, Clock::time_point now);
 
  private:
   messages::Status status_;
+  std::chrono::milliseconds period_;
   FrameWindow window_;
   Clock::time_point published_;
+  Awaited awaited_;  ///< of the last status
 };
 
 }  // namespace aurasim::process

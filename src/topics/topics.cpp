@@ -17,7 +17,7 @@ constexpr std::array<Topic, kTopicCount> kTopics = {{
     {TopicId::kMigrationAck, "migration_ack", "aurasim::wire::MigrationAck", Division::kByPair, true, kNodes, kNodes,
      "\"I have adopted it\""},
     {TopicId::kNodeStatus, "node_status", "aurasim::wire::NodeStatus", Division::kBySource, false, kNodes,
-     kNodes | kViewers, "about ten times a second: state, counts, times"},
+     kNodes | kViewers, "ten times a second, of more than 10 nodes less often: state, counts, times"},
     {TopicId::kRegionMap, "region_map", "aurasim::wire::RegionMap", Division::kNone, false, kNodes, kNodes | kViewers,
      "who owns what, and what all must agree on"},
     {TopicId::kRunControl, "run_control", "aurasim::wire::RunControl", Division::kNone, false, kNodes | kOperators,

@@ -55,6 +55,16 @@ TEST_F(NodeEndingTest, ASlowWorldIsLeftToReachTheStateInWhichAllStop) {
   EXPECT_EQ(first_deed(20s, 1).urge, Urge::kNone);
 }
 
+/// Of 80 nodes each publishes its state every 800 ms: a step that has not grown meanwhile says nothing.
+TEST_F(NodeEndingTest, ASlowWorldOfManyNodesIsLeftToReachItToo) {
+  is_seen(messages::NodeState::kRunning);
+  ending_ = NodeEnding(begin_, 80);
+  for (int status = 0; status < 20; ++status) {
+    ++seen_->status.step;
+    EXPECT_EQ(first_deed(status * 800ms).urge, Urge::kNone);
+  }
+}
+
 TEST_F(NodeEndingTest, OneThatStandsStillIsToldOnceAndThenWaitedFor) {
   is_seen(messages::NodeState::kRunning);
   EXPECT_EQ(first_deed(2s).urge, Urge::kTerminate);

@@ -20,7 +20,7 @@ class NodeStatusTest : public ::testing::Test {
  protected:
   static constexpr std::chrono::steady_clock::time_point kBegin{100s};
 
-  void publish(messages::NodeState state, NodeStatus::Clock::time_point now) { status_.note_published(state, now); }
+  void publish(messages::NodeState state, NodeStatus::Clock::time_point now) { status_.note_published(state, {}, now); }
 
   NodeStatus status_{identity_of_region_2(), kBegin};
 };
@@ -31,6 +31,24 @@ TEST_F(NodeStatusTest, IsDueAfterItsPeriodOrWhenTheStateOfTheNodeChanges) {
   EXPECT_FALSE(status_.is_due(messages::NodeState::kRunning, kBegin + 99ms));
   EXPECT_TRUE(status_.is_due(messages::NodeState::kRunning, kBegin + 100ms));
   EXPECT_TRUE(status_.is_due(messages::NodeState::kPaused, kBegin + 1ms));
+}
+
+TEST_F(NodeStatusTest, IsRarerTheMoreNodesReceiveIt) {
+  NodeStatus of_many(identity_of_region_2(), kBegin, 64);
+  of_many.note_published(messages::NodeState::kRunning, {}, kBegin);
+  EXPECT_FALSE(of_many.is_due(messages::NodeState::kRunning, kBegin + 639ms));
+  EXPECT_TRUE(of_many.is_due(messages::NodeState::kRunning, kBegin + 640ms));
+}
+
+TEST_F(NodeStatusTest, OfManyNodesComesSoonerWhereOthersWaitForWhatHasChanged) {
+  NodeStatus of_many(identity_of_region_2(), kBegin, 64);
+  const Awaited before{1, std::nullopt, 0};
+  of_many.note_published(messages::NodeState::kRunning, before, kBegin);
+  EXPECT_FALSE(of_many.is_awaited(before, kBegin + 200ms)) << "nothing new";
+  for (const Awaited& now : {Awaited{2, std::nullopt, 0}, Awaited{1, 7, 0}, Awaited{1, std::nullopt, 7}}) {
+    EXPECT_TRUE(of_many.is_awaited(now, kBegin + 100ms));
+    EXPECT_FALSE(of_many.is_awaited(now, kBegin + 99ms)) << "not with each state of a client's steps";
+  }
 }
 
 TEST_F(NodeStatusTest, IsDueAtOnceWhereOthersWaitForIt) {

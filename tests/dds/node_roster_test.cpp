@@ -1,0 +1,63 @@
+// When a look at the roster shows something new, without DDS.
+#include "dds/node_roster.h"
+
+#include <gtest/gtest.h>
+
+namespace aurasim::dds {
+namespace {
+
+using core::RegionId;
+
+class ARoster : public ::testing::Test {
+ protected:
+  static Guid writer_of(unsigned char process) {
+    Guid guid;
+    guid.guidPrefix.value[0] = process;
+    guid.entityId = 0x103U;
+    return guid;
+  }
+  void receive_status(std::uint32_t region, unsigned char process) {
+    messages::Status status;
+    status.region = RegionId{region};
+    status.process = process;
+    roster_.note(status, {writer_of(process), {}});
+  }
+  void look() {
+    RemoteWriter writer;
+    writer.guid = writer_of(1);
+    writer.order = 1;
+    writer.alive = true;
+    roster_.look({writer});
+  }
+  static RosterSettings settings() {
+    RosterSettings settings;
+    settings.region_count = 4;
+    return settings;
+  }
+
+  Speakers speakers_;
+  NodeRoster roster_{settings(), speakers_};
+};
+
+TEST_F(ARoster, HasNewsOnceAStatusHasCome) {
+  EXPECT_FALSE(roster_.has_news());
+  receive_status(2, 1);
+  EXPECT_TRUE(roster_.has_news());
+  look();
+  EXPECT_FALSE(roster_.has_news());
+  EXPECT_EQ(roster_.statuses().size(), 1U);
+}
+
+TEST_F(ARoster, HasNewsOfADeath) {
+  receive_status(2, 1);
+  look();
+  roster_.hold_for_dead(1);
+  EXPECT_TRUE(roster_.has_news());
+  look();
+  EXPECT_TRUE(roster_.statuses().at(RegionId{2}).dead);
+  roster_.receive_death(1);
+  EXPECT_TRUE(roster_.has_news()) << "a report of it";
+}
+
+}  // namespace
+}  // namespace aurasim::dds
