@@ -9,6 +9,7 @@
 
 #include "aurasimPubSubTypes.h"
 #include "dds/impairment_properties.h"
+#include "dds/many_nodes.h"
 #include "dds/participant_qos.h"
 #include "dds/wire_transport.h"
 #include "messages/guarded_type.h"
@@ -51,7 +52,10 @@ TypeSupport guarded(bool announces) {
 }  // namespace
 
 Domain::Domain(const Settings& settings)
-    : profiles_(settings.profiles), guard_(std::make_shared<rtps::DatagramGuard>()), speakers_(guard_) {
+    : profiles_(settings.profiles),
+      guard_(std::make_shared<rtps::DatagramGuard>()),
+      speakers_(guard_),
+      nodes_(settings.nodes) {
   DomainParticipantQos qos = participant_qos(profiles_, settings);
   datagram_B_ = largest_datagram_B(qos);
   has_keys_ = settings.keys.has_value();
@@ -64,7 +68,9 @@ Domain::Domain(const Settings& settings)
     delay_line_ =
         std::make_shared<DelayLine>(impairment, settings.impairment_stream, metatraffic_ports(qos, settings.domain));
   }
-  install(qos, guard_, delay_line_);
+  // A discovery server has to be asked again until it answers.
+  const bool finds_all_itself = settings.discovery != config::Discovery::kServer;
+  install(qos, {guard_, delay_line_, shortest_between_announcements(finds_all_itself ? settings.nodes : 1)});
   switch_intraprocess_delivery_off();
   messages::set_type_tables_up();
   if (settings.keys) refusals_.emplace(settings.report_refusal);
@@ -93,22 +99,14 @@ void Domain::Leave::operator()(eprosima::fastdds::dds::DomainParticipant* partic
 
 void Domain::register_types(bool announces) {
   const std::array types = {
-      guarded<wire::AuraBatchPubSubType>(announces),
-      guarded<wire::MigrationPubSubType>(announces),
-      guarded<wire::MigrationAckPubSubType>(announces),
-      guarded<wire::NodeStatusPubSubType>(announces),
-      guarded<wire::RegionMapPubSubType>(announces),
-      guarded<wire::RunControlPubSubType>(announces),
-      guarded<wire::ReplicaPubSubType>(announces),
-      guarded<wire::CommandPubSubType>(announces),
-      guarded<wire::CommandReplyPubSubType>(announces),
-      guarded<wire::MeshShapePubSubType>(announces),
-      guarded<wire::ClusterGraphPubSubType>(announces),
-      guarded<wire::CheckpointPubSubType>(announces),
-      guarded<wire::SeamParcelPubSubType>(announces),
-      guarded<wire::SetpointsPubSubType>(announces),
-      guarded<wire::InterestPubSubType>(announces),
-      guarded<wire::ObservationPubSubType>(announces),
+      guarded<wire::AuraBatchPubSubType>(announces),    guarded<wire::MigrationPubSubType>(announces),
+      guarded<wire::MigrationAckPubSubType>(announces), guarded<wire::NodeStatusPubSubType>(announces),
+      guarded<wire::RegionMapPubSubType>(announces),    guarded<wire::RunControlPubSubType>(announces),
+      guarded<wire::ReplicaPubSubType>(announces),      guarded<wire::CommandPubSubType>(announces),
+      guarded<wire::CommandReplyPubSubType>(announces), guarded<wire::MeshShapePubSubType>(announces),
+      guarded<wire::ClusterGraphPubSubType>(announces), guarded<wire::CheckpointPubSubType>(announces),
+      guarded<wire::SeamParcelPubSubType>(announces),   guarded<wire::SetpointsPubSubType>(announces),
+      guarded<wire::InterestPubSubType>(announces),     guarded<wire::ObservationPubSubType>(announces),
   };
   for (const TypeSupport& type : types) {
     if (type.register_type(participant_.get()) != ReturnCode_t::RETCODE_OK) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -61,6 +62,8 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   DelayLine* delay_line() const { return delay_line_.get(); }
   /// Largest datagram that goes out, bytes, without the headers of IP and UDP.
   std::uint32_t datagram_B() const { return datagram_B_; }
+  /// Value of Settings::nodes.
+  std::size_t nodes() const { return nodes_; }
   /// True when what is sent is encrypted by keys.
   bool has_keys() const { return has_keys_; }
   /// Puts together the messages that all readers of this process receive in parts.
@@ -86,6 +89,7 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   Speakers speakers_;
   PeerKeys peer_keys_;
   messages::PartAssembly parts_;
+  std::size_t nodes_ = 1;
   std::uint32_t datagram_B_ = 0;
   bool has_keys_ = false;
   bool loopback_only_ = false;

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "dds/many_nodes.h"
 #include "rtps/datagram_guard.h"
 
 namespace aurasim::dds {
@@ -103,6 +104,10 @@ Writer::Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
     qos.user_data().setValue(user_data_of(*spec.region));
   }
   if (part_fields_ != nullptr) make_room_for_parts(qos, domain);
+  auto& heartbeat = qos.reliable_writer_qos().times.heartbeatPeriod;
+  const std::chrono::nanoseconds shortest = shortest_heartbeat(spec.topic, domain.nodes());
+  if (shortest.count() > heartbeat.to_ns())
+    heartbeat = eprosima::fastrtps::Duration_t(std::chrono::duration<double>(shortest).count());
   writer_ = publisher_->create_datawriter(&topic, qos, &watch_, StatusMask::publication_matched());
   if (writer_ == nullptr) {
     throw_not_created("writer", spec);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -41,9 +42,12 @@ struct Settings {
   /// processes have died and reports it: then a silent process that still exists counts as slow. False only has an
   /// effect on loopback.
   bool believes_silence = true;
-  /// Every endpoint announces the TypeObject of its topic, for generic tools. In a run one node is enough, because it has
-  /// endpoints of every topic: what all of them announce is received by all others, and is most of the discovery.
+  /// Every endpoint announces the TypeObject of its topic, for generic tools. In a run one node is enough, because it
+  /// has endpoints of every topic: what all of them announce is received by all others, and is most of the discovery.
   bool announces_types = true;
+  /// Number of the run's nodes. With many of them all processes announce themselves, and ask readers of messages to all
+  /// nodes for what they miss, less often (many_nodes.h).
+  std::size_t nodes = 1;
   /// Keys to join a run with keys; nothing: an open run.
   std::optional<security::KeyFiles> keys;
   /// Called from DDS's threads with a sentence for each peer, reader or writer that is refused because of its keys.

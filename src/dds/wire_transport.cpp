@@ -1,5 +1,10 @@
 #include "dds/wire_transport.h"
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <fastdds/rtps/common/LocatorList.hpp>
 #include <fastdds/rtps/common/LocatorsIterator.hpp>
 #include <fastdds/rtps/transport/TransportReceiverInterface.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
@@ -10,6 +15,7 @@
 namespace aurasim::dds {
 
 using eprosima::fastdds::dds::DomainParticipantQos;
+using eprosima::fastdds::rtps::Locators;
 using eprosima::fastdds::rtps::TransportDescriptorInterface;
 using eprosima::fastdds::rtps::TransportReceiverInterface;
 using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
@@ -20,6 +26,14 @@ using eprosima::fastrtps::rtps::octet;
 using eprosima::fastrtps::rtps::SenderResource;
 
 namespace {
+
+rtps::AnnouncementLimit::Peer peer_of(const SenderResource* socket, const Locator_t& destination) {
+  rtps::AnnouncementLimit::Peer peer;
+  peer.socket = reinterpret_cast<std::uintptr_t>(socket);  // NOLINT: an id
+  std::copy_n(&destination.address[0], peer.address.size(), peer.address.begin());
+  peer.port = destination.port;
+  return peer;
+}
 
 rtps::Source source_of(const Locator_t& remote) {
   const octet* address = IPLocator::getIPv4(remote);
@@ -44,10 +58,8 @@ MetatrafficPorts metatraffic_ports(const DomainParticipantQos& qos, std::uint32_
   return ports;
 }
 
-WireTransportDescriptor::WireTransportDescriptor(std::shared_ptr<TransportDescriptorInterface> below,
-                                                 std::shared_ptr<rtps::DatagramGuard> the_guard,
-                                                 std::shared_ptr<DelayLine> the_line)
-    : ChainingTransportDescriptor(below), guard(std::move(the_guard)), line(std::move(the_line)) {
+WireTransportDescriptor::WireTransportDescriptor(std::shared_ptr<TransportDescriptorInterface> below, Wire the_wire)
+    : ChainingTransportDescriptor(below), wire(std::move(the_wire)) {
   const auto udp = std::dynamic_pointer_cast<UDPv4TransportDescriptor>(below);
   white_listed = udp != nullptr && !udp->interfaceWhiteList.empty();
 }
@@ -57,14 +69,29 @@ eprosima::fastdds::rtps::TransportInterface* WireTransportDescriptor::create_tra
 }
 
 WireTransport::WireTransport(const WireTransportDescriptor& descriptor)
-    : ChainingTransport(descriptor), descriptor_(descriptor) {}
+    : ChainingTransport(descriptor), descriptor_(descriptor), announcements_(descriptor.wire.between_announcements) {}
 
 WireTransport::~WireTransport() = default;
 
 bool WireTransport::send(SenderResource* socket, const octet* bytes, std::uint32_t size, LocatorsIterator* begin,
                          LocatorsIterator* end, const std::chrono::steady_clock::time_point& time_out) {
-  descriptor_.guard->note_sent({bytes, size});
-  if (descriptor_.line == nullptr) return socket->send(bytes, size, begin, end, time_out);
+  const std::span datagram(bytes, size);
+  descriptor_.wire.guard->note_sent(datagram);
+  const auto announcement = announcements_.is_limited() ? rtps::announcement_in(datagram) : std::nullopt;
+  if (!announcement) return send_to(socket, bytes, size, begin, end, time_out);
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  std::vector<Locator_t> due;
+  for (; *begin != *end; ++*begin) {
+    if (announcements_.allows(peer_of(socket, **begin), *announcement, now)) due.push_back(**begin);
+  }
+  if (due.empty()) return true;
+  Locators first(due.cbegin()), last(due.cend());
+  return send_to(socket, bytes, size, &first, &last, time_out);
+}
+
+bool WireTransport::send_to(SenderResource* socket, const octet* bytes, std::uint32_t size, LocatorsIterator* begin,
+                            LocatorsIterator* end, const std::chrono::steady_clock::time_point& time_out) {
+  if (descriptor_.wire.line == nullptr) return socket->send(bytes, size, begin, end, time_out);
   SenderResource* none = nullptr;
   const bool first = first_socket_.compare_exchange_strong(none, socket) || none == socket;
   bool sent = true;
@@ -73,7 +100,7 @@ bool WireTransport::send(SenderResource* socket, const octet* bytes, std::uint32
     if (!IsLocatorSupported(destination)) continue;
     // Fast DDS offers every datagram to every socket. Sockets after the first one do not send unicast.
     if (!first && !descriptor_.white_listed && !IPLocator::isMulticast(destination)) continue;
-    sent &= descriptor_.line->send(*socket, bytes, size, destination);
+    sent &= descriptor_.wire.line->send(*socket, bytes, size, destination);
   }
   return sent;
 }
@@ -83,8 +110,8 @@ void WireTransport::receive(TransportReceiverInterface* receiver, const octet* b
   // The bytes are a buffer of the socket's thread, made for what it receives.
   const std::span datagram(const_cast<octet*>(bytes), size);  // NOLINT
   const auto admitted =
-      descriptor_.guard->admit(datagram, source_of(remote), std::chrono::steady_clock::now().time_since_epoch());
-  const auto delivery = descriptor_.guard->delivery().begin(admitted.is_alone);
+      descriptor_.wire.guard->admit(datagram, source_of(remote), std::chrono::steady_clock::now().time_since_epoch());
+  const auto delivery = descriptor_.wire.guard->delivery().begin(admitted.is_alone);
   for (const auto& made : admitted.before) {
     const auto whole = made.bytes();
     receiver->OnDataReceived(whole.data(), static_cast<std::uint32_t>(whole.size()), local, remote);
@@ -95,21 +122,21 @@ void WireTransport::receive(TransportReceiverInterface* receiver, const octet* b
 }
 
 void WireTransport::shutdown() {
-  descriptor_.guard->delivery().open();  // else closing the sockets waits for their threads, which wait in the delivery
-  if (descriptor_.line != nullptr) descriptor_.line->stop();
+  descriptor_.wire.guard->delivery()
+      .open();  // else closing the sockets waits for their threads, which wait in the delivery
+  if (descriptor_.wire.line != nullptr) descriptor_.wire.line->stop();
   low_level_transport_->shutdown();
 }
 
-void install(DomainParticipantQos& qos, const std::shared_ptr<rtps::DatagramGuard>& guard,
-             const std::shared_ptr<DelayLine>& line) {
+void install(DomainParticipantQos& qos, const Wire& wire) {
   auto& transports = qos.transport().user_transports;
   if (transports.empty()) transports.push_back(std::make_shared<UDPv4TransportDescriptor>());
   qos.transport().use_builtin_transports = false;  // they would bypass it
   for (auto& transport : transports) {
-    if (line != nullptr && std::dynamic_pointer_cast<UDPv4TransportDescriptor>(transport) == nullptr) {
+    if (wire.line != nullptr && std::dynamic_pointer_cast<UDPv4TransportDescriptor>(transport) == nullptr) {
       throw DdsError("the network can be impaired (aurasim.impair.*, dds.impair) only where all transports are UDPv4");
     }
-    transport = std::make_shared<WireTransportDescriptor>(transport, guard, line);
+    transport = std::make_shared<WireTransportDescriptor>(transport, wire);
   }
 }
 

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
+#include <cstdint>
 #include <memory>
 
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
@@ -10,20 +12,27 @@
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
 
 #include "dds/delay_line.h"
+#include "rtps/announcement_limit.h"
 #include "rtps/datagram_guard.h"
 
 namespace aurasim::dds {
 
+/// What the transports of a participant share.
+struct Wire {
+  std::shared_ptr<rtps::DatagramGuard> guard;
+  std::shared_ptr<DelayLine> line;  ///< null: the network is not impaired
+  /// Shortest time between two of the participant's own announcements to one peer. 0: no limit.
+  std::chrono::nanoseconds between_announcements{0};
+};
+
 struct WireTransportDescriptor final : eprosima::fastdds::rtps::ChainingTransportDescriptor {
-  /// `below` is the transport that sends and receives. `line` may be null; if it is not, `below` must be UDPv4.
-  WireTransportDescriptor(std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> below,
-                          std::shared_ptr<rtps::DatagramGuard> guard, std::shared_ptr<DelayLine> line);
+  /// `below` is the transport that sends and receives; with a delay line it must be UDPv4.
+  WireTransportDescriptor(std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> below, Wire wire);
   eprosima::fastdds::rtps::TransportInterface* create_transport() const override;
 
   /// True: every interface's socket sends; false: one socket sends unicast, and all send multicast.
   bool white_listed = false;
-  std::shared_ptr<rtps::DatagramGuard> guard;
-  std::shared_ptr<DelayLine> line;
+  Wire wire;
 };
 
 class WireTransport final : public eprosima::fastdds::rtps::ChainingTransport {
@@ -32,7 +41,7 @@ class WireTransport final : public eprosima::fastdds::rtps::ChainingTransport {
   ~WireTransport() override;
 
   eprosima::fastdds::rtps::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
-  /// Sends through the delay line: only sent datagrams are impaired.
+  /// Sends through the delay line: only sent datagrams are impaired. Does not repeat announcements too often.
   bool send(eprosima::fastrtps::rtps::SenderResource* socket, const eprosima::fastrtps::rtps::octet* bytes,
             std::uint32_t size, eprosima::fastrtps::rtps::LocatorsIterator* begin,
             eprosima::fastrtps::rtps::LocatorsIterator* end,
@@ -47,7 +56,12 @@ class WireTransport final : public eprosima::fastdds::rtps::ChainingTransport {
   void shutdown() override;
 
  private:
+  bool send_to(eprosima::fastrtps::rtps::SenderResource* socket, const eprosima::fastrtps::rtps::octet* bytes,
+               std::uint32_t size, eprosima::fastrtps::rtps::LocatorsIterator* begin,
+               eprosima::fastrtps::rtps::LocatorsIterator* end, const std::chrono::steady_clock::time_point& time_out);
+
   WireTransportDescriptor descriptor_;
+  rtps::AnnouncementLimit announcements_;
   std::atomic<eprosima::fastrtps::rtps::SenderResource*> first_socket_{nullptr};
 };
 
@@ -56,7 +70,6 @@ MetatrafficPorts metatraffic_ports(const eprosima::fastdds::dds::DomainParticipa
 
 /// Puts the guard, and the delay line if there is one, over every transport of `qos`. Fast DDS's built-in transports,
 /// shared memory among them, are not used. Throws DdsError when there is a line and a transport that is not UDPv4.
-void install(eprosima::fastdds::dds::DomainParticipantQos& qos, const std::shared_ptr<rtps::DatagramGuard>& guard,
-             const std::shared_ptr<DelayLine>& line);
+void install(eprosima::fastdds::dds::DomainParticipantQos& qos, const Wire& wire);
 
 }  // namespace aurasim::dds

@@ -23,6 +23,7 @@ dds::Settings dds_settings(const config::Launch& launch, std::optional<core::Reg
                          impair.reorder, impair.discovery, impair.seed};
   settings.impairment_stream = region ? core::value_of(*region) + std::uint64_t{1} : 0;
   settings.discovery = launch.dds.discovery;
+  settings.nodes = launch.regions.size();
   return settings;
 }
 

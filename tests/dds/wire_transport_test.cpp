@@ -76,7 +76,7 @@ class Sender {
       : line_(std::make_shared<DelayLine>(impairment, 1, std::move(ports))) {
     auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
     udp->interfaceWhiteList = {"127.0.0.1"};
-    const WireTransportDescriptor descriptor(udp, std::make_shared<rtps::DatagramGuard>(), line_);
+    const WireTransportDescriptor descriptor(udp, {std::make_shared<rtps::DatagramGuard>(), line_});
     transport_.reset(descriptor.create_transport());
     destination_.kind = LOCATOR_KIND_UDPv4;
     destination_.port = port;
