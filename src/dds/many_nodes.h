@@ -1,5 +1,5 @@
 // What is done less often where a run has many nodes. Everybody discovers everybody, so what each node says to all
-// others grows with the square of their number; runs of few nodes are not changed (docs/decisions/0043).
+// others grows with the square of their number; runs of few nodes are not changed (docs/decisions/0045).
 #pragma once
 
 #include <algorithm>
