@@ -158,6 +158,20 @@ TEST_F(ProtocolTest, AnAuraOfALowerRegionPullsAndOneOfAHigherDoesNot) {
   EXPECT_EQ(departures[0].reason, HandOffReason::kAuraCollision);
 }
 
+TEST_F(ProtocolTest, ClustersThatLeaveForOneRegionTogetherAreOneHandOff) {
+  host(1, {0.4, 0, 0});
+  host(2, {0.4, 20, 0});
+  start(1);
+  AuraBatch both = batch(0, 0);
+  both.updates = {foreign(7, {-0.4, 0, 0}, 0, 0), foreign(8, {-0.4, 20, 0}, 0, 0)};
+  receive(std::move(both));
+  receive_next();
+  const std::vector<Departure>& leave = observe();
+  ASSERT_EQ(leave.size(), 1u);
+  EXPECT_EQ(leave[0].bodies, (std::vector{body(1), body(2)}));
+  EXPECT_EQ(protocol->outbox().hand_offs.size(), 1u);
+}
+
 TEST_F(ProtocolTest, TheLowestOfSeveralRegionsPulls) {
   host(1, Vec3(10, 0, 0));
   start(2, RegionMap::columns(3, 10));
