@@ -159,7 +159,7 @@ TEST_P(ClusterTest, TightAurasMissNothingEither) {
 /// The checks above can fail: without auras, bodies meet without knowing of each other.
 TEST_P(ClusterTest, WithoutAurasCollisionsAreLateOrMissed) {
   std::uint64_t wrong = 0;
-  for (int seed = 1; seed <= std::max(4, seeds() / 10); ++seed) {
+  for (int seed = 1; seed <= std::max(12, seeds() / 10); ++seed) {
     const core::Scene scene = scene_for(layout_, seed);
     ClusterOptions options = options_for(layout_, seed);
     options.aura.kind = AuraKind::kNone;

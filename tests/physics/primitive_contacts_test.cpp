@@ -352,7 +352,8 @@ core::Scene scene_on_a_table(const core::Shape& shape) {
 }
 
 TEST(PrimitiveContacts, ACapsuleComesToRestOnABox) {
-  RegionWorld world(scene_on_a_table(core::Capsule{0.2, 0.8}), soft());
+  const core::Scene scene = scene_on_a_table(core::Capsule{0.2, 0.8});
+  RegionWorld world(scene, soft());
   core::BodyRecord capsule = body(1, 0, {0, 0, 1.6});
   capsule.R_WB = Eigen::AngleAxisd(1.3, Vec3::UnitY()).toRotationMatrix();
   world.add(std::vector{capsule});

@@ -56,6 +56,27 @@ void expect_same_bits(const core::Scene& scene, const std::vector<core::BodyReco
   }
 }
 
+/// Computes a step in which the other threads take as long to come as where another process has their cores.
+void step_on_a_busy_machine(soft::Team& team) {
+  team.employ_for(1000);
+  team.side_by_side([](const soft::Worker& worker) {
+    if (!worker.is_first()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  });
+  team.rest();
+}
+
+TEST(SoftThreads, WhereOthersHaveTheCoresOneThreadWorksAlone) {
+  soft::Team team(2);
+  step_on_a_busy_machine(team);
+  for (int step = 0; step < 60; ++step) {
+    team.employ_for(1000);
+    EXPECT_EQ(team.employed(), 1) << step;
+    team.rest();
+  }
+  team.employ_for(1000);
+  EXPECT_EQ(team.employed(), 2);
+}
+
 TEST(SoftThreads, AreFewerForFewBodies) {
   soft::Team team(8);
   const auto workers_for = [&](std::size_t bodies) {

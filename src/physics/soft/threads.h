@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -42,7 +43,9 @@ struct Worker {
 };
 
 /// The threads of one world. They start when there is work for them first. A thread that waits
-/// within a step looks again and again for some 1 ms, then it sleeps; between steps it sleeps at once.
+/// within a step looks again and again for some 1 ms, then it sleeps; between steps it sleeps at once. Where
+/// the first thread waits for others for more than half of a step, because other processes have the cores, it computes
+/// the next steps alone.
 class Team {
  public:
   /// At most `threads` threads, with the one that calls.
@@ -55,11 +58,11 @@ class Team {
   int size() const { return size_; }
   /// Number of threads that work now.
   int employed() const { return employed_; }
-  /// Chooses how many threads work from now on. With few bodies the threads would wait for each other longer than they
-  /// work.
+  /// Begins a step: chooses how many threads work in it. With few bodies the threads would wait for each other longer
+  /// than they work.
   void employ_for(std::size_t bodies);
-  /// Lets the other threads sleep at once until the next job, which comes only in the next step.
-  void rest() { rests_.store(true, std::memory_order_relaxed); }
+  /// Ends a step: lets the other threads sleep at once until the next job.
+  void rest();
 
   /// Calls work(Worker) in all employed threads at once. Returns when all are done.
   template <class Work>
@@ -82,16 +85,22 @@ class Team {
  private:
   friend struct Worker;
   using Call = void (*)(void* job, const Worker& worker);
+  using Clock = std::chrono::steady_clock;
 
   void run(Call call, const void* job);
   void serve(int number);
-  void wait(int of);
+  void wait(const Worker& worker);
   void change(std::atomic<std::uint32_t>& word, std::uint32_t to);
-  void await_change(const std::atomic<std::uint32_t>& word, std::uint32_t from);
+  /// Adds the time of a wait that is not short to `waited`, if given.
+  void await_change(const std::atomic<std::uint32_t>& word, std::uint32_t from, Clock::duration* waited);
 
   int size_;
   int employed_ = 1;
   int spins_;
+  int steps_alone_ = 0;       ///< so many steps are still computed by one thread
+  int steps_alone_next_;      ///< so many will be, when the first thread has waited too long again
+  Clock::time_point begun_;   ///< of the present step
+  Clock::duration waited_{};  ///< by the first thread, in the present step
   Call call_ = nullptr;
   void* job_ = nullptr;
   /// Number of the job, times kMostThreads, plus the number of threads that work on it. 0: the team is dismissed.
@@ -104,7 +113,7 @@ class Team {
 };
 
 inline void Worker::wait() const {
-  if (of > 1) team->wait(of);
+  if (of > 1) team->wait(*this);
 }
 
 }  // namespace aurasim::physics::soft
