@@ -89,14 +89,6 @@ bool has_bodies(const Injector& injector) {
   return injector.max_bodies > 0 && injector.rate_per_s > 0 && !injector.prototypes.empty();
 }
 
-/// State in which body `index` is born. It never falls as the index grows, because rounding is monotonic. A time that
-/// is a whole number of steps up to rounding counts as that number.
-Step birth_step(const Injector& injector, std::uint64_t index, double step_s) {
-  constexpr double kRounding = 1e-9;
-  const double time_s = injector.start_s + (static_cast<double>(index) + 1) / injector.rate_per_s;
-  return static_cast<Step>(std::clamp(std::ceil(time_s / step_s - kRounding), 1.0, 0x1p62));
-}
-
 }  // namespace
 
 double bounding_radius(const Shape& shape) { return std::visit(FarthestPoint{}, shape); }
@@ -138,6 +130,13 @@ BodyRecord initial_record(const InitialBody& body, Step birth) {
   record.v_WB = body.v_WB;
   record.w_WB = body.w_WB;
   return record;
+}
+
+Step birth_step(const Injector& injector, std::uint64_t index, double step_s) {
+  if (!has_bodies(injector) || index >= injector.max_bodies) return std::numeric_limits<Step>::max();
+  constexpr double kRounding = 1e-9;
+  const double time_s = injector.start_s + (static_cast<double>(index) + 1) / injector.rate_per_s;
+  return static_cast<Step>(std::clamp(std::ceil(time_s / step_s - kRounding), 1.0, 0x1p62));
 }
 
 std::optional<BodyRecord> injected_body(const Injector& injector, std::uint64_t index, double step_s) {

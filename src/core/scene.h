@@ -172,6 +172,11 @@ BodyRecord initial_record(const InitialBody& body, Step birth = 0);
 /// The same arguments give the same body on every node (std::mt19937_64 seeded with (seed, index)).
 std::optional<BodyRecord> injected_body(const Injector& injector, std::uint64_t index, double step_s);
 
+/// State in which body `index` is born; the largest Step if the injector makes no such body. It never falls as the
+/// index grows, because rounding is monotonic. A time that is a whole number of steps up to rounding counts as that
+/// number.
+Step birth_step(const Injector& injector, std::uint64_t index, double step_s);
+
 /// How many bodies of `injector` exist in state `step` (those with birth <= step).
 std::uint64_t injected_count(const Injector& injector, Step step, double step_s);
 

@@ -16,20 +16,31 @@ struct NewBody {
   std::optional<core::Order> order;  ///< the order that makes it; nothing: an injector does
 };
 
+/// The next body of each injector of a scene. It follows from the scene and a state alone, so no cut needs it.
+class Injections {
+ public:
+  /// Bodies that the scene's injectors make after state `after`, up to state `until`; by injector. Calls for successive
+  /// states look at one number for each injector that makes nothing.
+  std::vector<core::BodyRecord> between(const core::Scene& scene, core::Step after, core::Step until, double step_s);
+
+ private:
+  struct Next {
+    core::Step birth = 0;
+    std::uint64_t index = 0;
+  };
+
+  core::Step known_ = 0;    ///< next_ is of the bodies born after this state
+  std::vector<Next> next_;  ///< by injector; empty at first
+};
+
 /// Bodies that have not been announced yet. Every node keeps all of them, because any node may own the place of a
 /// birth.
 struct ToBeBorn {
-  std::vector<core::Order> spawns;            ///< spawn orders received so far, in sequence
-  std::vector<std::uint64_t> next_injection;  ///< per injector, the first index not yet announced
+  std::vector<core::Order> spawns;  ///< spawn orders received so far, in sequence
+  core::Step injected = 0;          ///< bodies that injectors make up to this state have been announced
 
-  /// Begins with the injectors of `scene`: bodies born up to state `known` count as announced.
-  void begin(const core::Scene& scene, core::Step known, double step_s);
   /// Takes out what appears up to state `birth`: first the bodies of orders, then the injected ones.
-  std::vector<NewBody> take_due(const core::Scene& scene, core::Step birth, double step_s);
+  std::vector<NewBody> take_due(const core::Scene& scene, Injections& injections, core::Step birth, double step_s);
 };
-
-/// Bodies that the scene's injectors make after state `after`, up to state `until`.
-std::vector<core::BodyRecord> injected_between(const core::Scene& scene, core::Step after, core::Step until,
-                                               double step_s);
 
 }  // namespace aurasim::node

@@ -62,7 +62,7 @@ Node::Node(const NodeSetup& setup, const core::Scene& scene, const core::RegionM
 /// order names. The owner of their place publishes them from now on.
 void Node::announce_births(core::Step state) {
   const core::Step birth = state + core::horizon::birth_notice(setup_.protocol.aura.lookahead);
-  for (NewBody& body : to_be_born_.take_due(scene(), birth, setup_.physics.step_s)) {
+  for (NewBody& body : to_be_born_.take_due(scene(), injections_, birth, setup_.physics.step_s)) {
     core::BodyRecord& record = body.record;
     if (map_->owner(record.p_WB) != region() || (body.order && world_.contains(record.id))) continue;
     record.epoch = first_epoch_;

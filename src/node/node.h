@@ -255,6 +255,7 @@ class Node {
   CollisionWatch watch_;
   core::Inbox inbox_;
   ToBeBorn to_be_born_;
+  Injections injections_;
   Touches touches_;
   Cuts cuts_;
   SavedStates saved_;

@@ -136,10 +136,11 @@ void Node::execute_saved(const core::WorldCut& world) {
     if (order.at_step > world.births_known) born_soon.push_back(record_of(*spawn, order.at_step));
   }
   scene_.use_meshes(std::move(before));
-  to_be_born_.begin(scene(), soon, setup_.physics.step_s);
-  for (const core::BodyRecord& body : injected_between(scene(), world.births_known, soon, setup_.physics.step_s)) {
+  const double step_s = setup_.physics.step_s;
+  for (const core::BodyRecord& body : injections_.between(scene(), world.births_known, soon, step_s)) {
     born_soon.push_back(body);
   }
+  to_be_born_.injected = soon;
   check_bodies(world, scene());
 }
 

@@ -74,16 +74,40 @@ std::vector<std::uint64_t> ids_of(const std::vector<NewBody>& bodies) {
 
 TEST(Births, BodiesOfOrdersComeWhenTheirStateIsNear) {
   ToBeBorn births;
-  births.begin({}, 0, kBirthStep_s);
+  Injections injections;
   births.spawns = {spawn(1, 11, 50), spawn(2, 12, 40)};
-  EXPECT_THAT(births.take_due({}, 39, kBirthStep_s), IsEmpty());
-  const std::vector<NewBody> due = births.take_due({}, 40, kBirthStep_s);
+  EXPECT_THAT(births.take_due({}, injections, 39, kBirthStep_s), IsEmpty());
+  const std::vector<NewBody> due = births.take_due({}, injections, 40, kBirthStep_s);
   ASSERT_THAT(ids_of(due), ElementsAre(12));
   EXPECT_EQ(due[0].record.birth, 40);
   ASSERT_TRUE(due[0].order);
   EXPECT_EQ(due[0].order->request, 102U);
-  EXPECT_THAT(ids_of(births.take_due({}, 60, kBirthStep_s)), ElementsAre(11));
-  EXPECT_THAT(births.take_due({}, 60, kBirthStep_s), IsEmpty());
+  EXPECT_THAT(ids_of(births.take_due({}, injections, 60, kBirthStep_s)), ElementsAre(11));
+  EXPECT_THAT(births.take_due({}, injections, 60, kBirthStep_s), IsEmpty());
+}
+
+TEST(Births, InjectedBodiesAreTheSameFromWhateverStateOneGoesOn) {
+  core::Scene scene;
+  for (const double rate : {7.0, 0.4, 100.0, 0.0}) {
+    core::Injector injector;
+    injector.first_id = BodyId{1000 * (scene.injectors.size() + 1)};
+    injector.rate_per_s = rate;
+    injector.max_bodies = 40;
+    injector.prototypes = {core::PrototypeId{0}};
+    scene.injectors.push_back(injector);
+  }
+  const auto count = [&](Step state) {
+    std::uint64_t born = 0;
+    for (const core::Injector& injector : scene.injectors) born += core::injected_count(injector, state, kBirthStep_s);
+    return born;
+  };
+  Injections injections;
+  std::uint64_t born = 0;
+  for (Step state = 1; state <= 200; ++state) {
+    born += injections.between(scene, state - 1, state, kBirthStep_s).size();
+    ASSERT_EQ(born, count(state)) << state;
+  }
+  EXPECT_EQ(injections.between(scene, 50, 60, kBirthStep_s).size(), count(60) - count(50));  // after a redo
 }
 
 core::Order shape_order(std::uint64_t sequence, Step at_step, const core::MeshRef& mesh) {
