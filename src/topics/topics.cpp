@@ -13,7 +13,7 @@ constexpr std::array<Topic, kTopicCount> kTopics = {{
     {TopicId::kAura, "aura", "aurasim::wire::AuraBatch", Division::kBySource, true, kNodes, kNodes | kViewers,
      "one per node and step, even if empty: \"state n is done\"; auras, orders"},
     {TopicId::kMigration, "migration", "aurasim::wire::Migration", Division::kByPair, true, kNodes, kNodes,
-     "one cluster changes host"},
+     "clusters change host"},
     {TopicId::kMigrationAck, "migration_ack", "aurasim::wire::MigrationAck", Division::kByPair, true, kNodes, kNodes,
      "\"I have adopted it\""},
     {TopicId::kNodeStatus, "node_status", "aurasim::wire::NodeStatus", Division::kBySource, false, kNodes,

@@ -118,7 +118,8 @@ TEST(Traffic, StaysOnLoopback) {
   }
   talk();
   auto packets = capture.packets();
-  EXPECT_GT(packets["lo"], 100) << "the capture does not see what it should";
+  // Endpoints of one process exchange samples without a packet, so these are discovery.
+  EXPECT_GT(packets["lo"], 0) << "the capture does not see what it should";
   packets.erase("lo");
   for (const auto& [interface, count] : packets) {
     ADD_FAILURE() << count << " packets on " << interface;
