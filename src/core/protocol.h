@@ -49,7 +49,8 @@ struct Changes {
   std::vector<Order> orders;  ///< orders received since the last step, in sequence; execute them before anything else
 };
 
-/// Clusters that have to leave. The caller releases it from physics and passes it to hand_over().
+/// Clusters that have to leave for one region. The caller releases their bodies from physics and passes them to
+/// hand_over().
 struct Departure {
   RegionId destination{};
   HandOffReason reason{};

@@ -6,6 +6,7 @@
 #include <string>
 #include <tuple>
 
+#include "core/keep_one_of_each.h"
 #include "core/united.h"
 
 namespace aurasim::core {
@@ -15,9 +16,7 @@ namespace {
 /// out.
 void append(std::vector<Order>& to, const std::vector<Order>& from) {
   to.insert(to.end(), from.begin(), from.end());
-  std::ranges::sort(to, {}, &Order::sequence);
-  const auto copies = std::ranges::unique(to, {}, &Order::sequence);
-  to.erase(copies.begin(), copies.end());
+  keep_one_of_each(to, &Order::sequence);
 }
 
 void append(std::vector<SavedShape>& to, const std::vector<SavedShape>& from) {

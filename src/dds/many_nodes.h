@@ -1,4 +1,4 @@
-// What is done less often where a run has many nodes. Everybody discovers everybody, so what each node says to all
+// Periods that are longer where a run has many nodes. Everybody discovers everybody, so what each node says to all
 // others grows with the square of their number; runs of few nodes are not changed (docs/decisions/0045).
 #pragma once
 

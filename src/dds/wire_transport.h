@@ -17,7 +17,7 @@
 
 namespace aurasim::dds {
 
-/// What the transports of a participant share.
+/// Parts that the transports of a participant share.
 struct Wire {
   std::shared_ptr<rtps::DatagramGuard> guard;
   std::shared_ptr<DelayLine> line;  ///< null: the network is not impaired

@@ -12,9 +12,8 @@ namespace aurasim::messages {
 /// so the period grows with their number: nobody receives more than 100 statuses a second, up to 100 nodes. A status in
 /// which something has changed that others wait for is published at once.
 constexpr std::chrono::milliseconds status_period(std::size_t regions) {
-  constexpr std::size_t kShortest_ms = 100, kLongest_ms = 1000, kOfANode_ms = 10;
-  return std::chrono::milliseconds(
-      std::clamp(kOfANode_ms * std::min<std::size_t>(regions, 100), kShortest_ms, kLongest_ms));
+  constexpr std::size_t kFewest = 10, kMost = 100, kOfANode_ms = 10;
+  return std::chrono::milliseconds(kOfANode_ms * std::clamp(regions, kFewest, kMost));
 }
 
 }  // namespace aurasim::messages

@@ -18,11 +18,8 @@ core::WorldCut first_world(const core::Scene& scene, int lookahead, double step_
   world.births_known = core::horizon::birth_notice(lookahead);
   std::vector<core::BodyRecord>& records = world.bodies.bodies;
   for (const core::InitialBody& body : scene.bodies) records.push_back(core::initial_record(body));
-  for (const core::Injector& injector : scene.injectors) {
-    const std::uint64_t count = core::injected_count(injector, world.births_known, step_s);
-    for (std::uint64_t i = 0; i < count; ++i) {
-      if (auto record = core::injected_body(injector, i, step_s)) records.push_back(*record);
-    }
+  for (core::BodyRecord& record : Injections().between(scene, 0, world.births_known, step_s)) {
+    records.push_back(std::move(record));
   }
   std::ranges::sort(records, {}, &core::BodyRecord::id);
   return world;

@@ -24,33 +24,17 @@ const HullFaces& faces_of(const btCollisionObjectWrapper& object) {
   return *hull_faces_of(*object.getCollisionShape());
 }
 
-class HullContacts final : public btCollisionAlgorithm {
+class HullContacts final : public WholeContacts {
  public:
-  HullContacts(const btCollisionAlgorithmConstructionInfo& info, const HullContactsMaker& maker, double margin_m)
-      : btCollisionAlgorithm(info), maker_(maker), manifold_(*info.m_dispatcher1, margin_m) {}
+  using WholeContacts::WholeContacts;
 
   void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b, const btDispatcherInfo&,
                         btManifoldResult* result) override {
     const btTransform X_AB = a->getWorldTransform().inverseTimes(b->getWorldTransform());
-    const std::optional<HullGap> closest = closest_axis(faces_of(*a), faces_of(*b), X_AB, manifold_.margin_m(), last_);
-    if (closest || maker_.makes_all_manifolds()) manifold_.make(*a, *b);
-    if (manifold_.get() == nullptr) return;
-    result->setPersistentManifold(manifold_.get());
-    if (closest) {
+    const std::optional<HullGap> closest = closest_axis(faces_of(*a), faces_of(*b), X_AB, manifold().margin_m(), last_);
+    if (give_manifold(*a, *b, closest.has_value(), *result)) {
       put_points(*a, *b, X_AB, *closest, dynamic_cast<CorrectedResult*>(result));
-    } else {
-      manifold_.get()->clearManifold();
     }
-  }
-
-  /// Not called: fast bodies are stopped by casts.
-  btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
-                                 btManifoldResult*) override {
-    return 1;
-  }
-
-  void getAllContactManifolds(btManifoldArray& manifolds) override {
-    if (manifold_.get() != nullptr) manifolds.push_back(manifold_.get());
   }
 
  private:
@@ -58,7 +42,7 @@ class HullContacts final : public btCollisionAlgorithm {
                   const HullGap& closest, CorrectedResult* inner_edges) {
     WholeManifold::FeatureSpace before;
     const HullPoints found =
-        contact_points(faces_of(a), faces_of(b), X_AB, closest, manifold_.margin_m(), manifold_.features(before));
+        contact_points(faces_of(a), faces_of(b), X_AB, closest, manifold().margin_m(), manifold().features(before));
     std::array<NamedPoint, std::tuple_size_v<decltype(found.points)>> points;
     const btTransform& X_A = a.getWorldTransform();
     const btVector3 normal = -(X_A.getBasis() * found.normal);
@@ -67,12 +51,10 @@ class HullContacts final : public btCollisionAlgorithm {
       const HullPoint& point = found.points[i];
       points[i] = {{normal, X_A(point.on_b), point.gap}, point.features};
     }
-    manifold_.put(a, b, std::span(points).first(count), inner_edges);
+    manifold().put(a, b, std::span(points).first(count), inner_edges);
   }
 
-  const HullContactsMaker& maker_;
   HullAxis last_;  ///< of this world only: it changes no bit
-  WholeManifold manifold_;
 };
 
 // Bullet's pool has room for its own algorithms.
@@ -87,7 +69,7 @@ btCollisionAlgorithm* HullContactsMaker::CreateCollisionAlgorithm(btCollisionAlg
     return others_.CreateCollisionAlgorithm(info, a, b);
   }
   void* const memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(HullContacts));
-  return new (memory) HullContacts(info, *this, contact_margin(*a, *b, margin_));
+  return new (memory) HullContacts(info, *this, *a, *b);
 }
 
 }  // namespace aurasim::physics

@@ -2,19 +2,15 @@
 // Bullet's own algorithm finds one point a step, and puts others beside it that it found in earlier steps.
 #pragma once
 
-#include <BulletCollision/CollisionDispatch/btCollisionCreateFunc.h>
+#include "physics/whole_manifold.h"
 
 namespace aurasim::physics {
 
 /// Makes the algorithms of pairs in which both shapes have faces (hull_faces.h); those of others by `others`.
-class HullContactsMaker final : public btCollisionAlgorithmCreateFunc {
+class HullContactsMaker final : public WholeContactsMaker {
  public:
-  /// `margin_m`: largest gap of a contact. Contacts of small bodies have smaller gaps.
-  HullContactsMaker(btCollisionAlgorithmCreateFunc& others, double margin_m) : others_(others), margin_(margin_m) {}
-
-  /// While this is set, pairs get a manifold also if they do not touch.
-  void make_all_manifolds(bool wanted) { makes_all_manifolds_ = wanted; }
-  bool makes_all_manifolds() const { return makes_all_manifolds_; }
+  HullContactsMaker(btCollisionAlgorithmCreateFunc& others, double margin_m)
+      : WholeContactsMaker(margin_m), others_(others) {}
 
   btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
                                                  const btCollisionObjectWrapper* a,
@@ -22,8 +18,6 @@ class HullContactsMaker final : public btCollisionAlgorithmCreateFunc {
 
  private:
   btCollisionAlgorithmCreateFunc& others_;
-  const double margin_;
-  bool makes_all_manifolds_ = false;
 };
 
 }  // namespace aurasim::physics

@@ -59,34 +59,17 @@ Rod rod_of(const btCollisionObjectWrapper& object) {
           capsule.getRadius()};
 }
 
-class PrimitiveContacts final : public btCollisionAlgorithm {
+class PrimitiveContacts final : public WholeContacts {
  public:
-  PrimitiveContacts(const btCollisionAlgorithmConstructionInfo& info, const PrimitiveContactsMaker& maker,
-                    double margin_m)
-      : btCollisionAlgorithm(info), maker_(maker), manifold_(*info.m_dispatcher1, margin_m) {}
+  using WholeContacts::WholeContacts;
 
   void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b, const btDispatcherInfo&,
                         btManifoldResult* result) override {
     Found points;
     const auto found = std::span(points).first(find(*a, *b, points));
-    if (!found.empty() || maker_.makes_all_manifolds()) manifold_.make(*a, *b);
-    if (manifold_.get() == nullptr) return;
-    result->setPersistentManifold(manifold_.get());
-    if (found.empty()) {
-      manifold_.get()->clearManifold();
-    } else {
-      manifold_.put(*a, *b, found, dynamic_cast<CorrectedResult*>(result));
+    if (give_manifold(*a, *b, !found.empty(), *result)) {
+      manifold().put(*a, *b, found, dynamic_cast<CorrectedResult*>(result));
     }
-  }
-
-  /// Not called: fast bodies are stopped by casts.
-  btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
-                                 btManifoldResult*) override {
-    return 1;
-  }
-
-  void getAllContactManifolds(btManifoldArray& manifolds) override {
-    if (manifold_.get() != nullptr) manifolds.push_back(manifold_.get());
   }
 
  private:
@@ -96,7 +79,7 @@ class PrimitiveContacts final : public btCollisionAlgorithm {
   std::size_t find(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, Found& points) const {
     if (is_plane(a) || is_plane(b)) return is_plane(b) ? on_plane(a, b, true, points) : on_plane(b, a, false, points);
     if (is_box(a) || is_box(b)) return is_box(b) ? on_box(a, b, true, points) : on_box(b, a, false, points);
-    const RodPoints found = rod_points(rod_of(a), rod_of(b), manifold_.margin_m());
+    const RodPoints found = rod_points(rod_of(a), rod_of(b), manifold().margin_m());
     const auto count = static_cast<std::size_t>(found.count);
     for (std::size_t i = 0; i < count; ++i) {
       const RodPoint& point = found.points[i];
@@ -108,7 +91,7 @@ class PrimitiveContacts final : public btCollisionAlgorithm {
   std::size_t on_plane(const btCollisionObjectWrapper& round, const btCollisionObjectWrapper& plane, bool round_is_a,
                        Found& points) const {
     const HalfSpace half_space = half_space_of(plane);
-    const PlanePoints found = plane_points(rod_of(round), half_space, manifold_.margin_m());
+    const PlanePoints found = plane_points(rod_of(round), half_space, manifold().margin_m());
     const auto count = static_cast<std::size_t>(found.count);
     for (std::size_t i = 0; i < count; ++i) {
       const PlanePoint& point = found.points[i];
@@ -124,7 +107,7 @@ class PrimitiveContacts final : public btCollisionAlgorithm {
     Rod rod = rod_of(round);
     rod.centre = X.invXform(rod.centre);
     rod.half = rod.half * X.getBasis();
-    const RodPoints found = rod_points(rod, half_extents_of(box), manifold_.margin_m());
+    const RodPoints found = rod_points(rod, half_extents_of(box), manifold().margin_m());
     const auto count = static_cast<std::size_t>(found.count);
     for (std::size_t i = 0; i < count; ++i) {
       const RodPoint& point = found.points[i];
@@ -132,9 +115,6 @@ class PrimitiveContacts final : public btCollisionAlgorithm {
     }
     return count;
   }
-
-  const PrimitiveContactsMaker& maker_;
-  WholeManifold manifold_;
 };
 
 // Bullet's pool has room for its own algorithms.
@@ -146,7 +126,7 @@ btCollisionAlgorithm* PrimitiveContactsMaker::CreateCollisionAlgorithm(btCollisi
                                                                        const btCollisionObjectWrapper* a,
                                                                        const btCollisionObjectWrapper* b) {
   void* const memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(PrimitiveContacts));
-  return new (memory) PrimitiveContacts(info, *this, contact_margin(*a, *b, margin_));
+  return new (memory) PrimitiveContacts(info, *this, *a, *b);
 }
 
 }  // namespace aurasim::physics

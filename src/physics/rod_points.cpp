@@ -11,7 +11,7 @@ namespace {
 
 /// The nearest point is left out if a point at an end is as deep, to within this share of the margin.
 constexpr btScalar kPrefer = btScalar(1) / 40;
-/// Of two points that are nearer to each other than this share of the rod's radius, one is enough.
+/// Two points are one if they are nearer to each other than this share of the rod's radius.
 constexpr btScalar kApart = btScalar(0.25);
 /// Nearer to each other, m, two points count as one, so the line between them gives no normal.
 constexpr btScalar kTouch_m = btScalar(1e-9);

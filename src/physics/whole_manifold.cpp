@@ -15,6 +15,11 @@ double margin_of(const btCollisionObjectWrapper& object) {
   return object.getCollisionObject()->getCollisionShape()->getContactBreakingThreshold(gContactBreakingThreshold);
 }
 
+/// Largest gap of a contact of these two, m: at most `most_m`, and less for small bodies, as Bullet has it.
+double contact_margin(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, double most_m) {
+  return std::min({most_m, margin_of(a), margin_of(b)});
+}
+
 ContactFeatures features_of(const btManifoldPoint& point) { return {point.m_partId0, point.m_partId1}; }
 
 bool uses_callback(const btCollisionObjectWrapper& object) {
@@ -39,7 +44,7 @@ btManifoldPoint made_point(const btCollisionObjectWrapper& a, const btCollisionO
   return made;
 }
 
-/// What Bullet keeps of a point that it finds again.
+/// The part of a point that Bullet keeps when it finds the point again.
 struct Kept {
   explicit Kept(const btManifoldPoint& point)
       : features(features_of(point)),
@@ -63,10 +68,6 @@ struct Kept {
 };
 
 }  // namespace
-
-double contact_margin(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, double most_m) {
-  return std::min({most_m, margin_of(a), margin_of(b)});
-}
 
 WholeManifold::~WholeManifold() {
   if (manifold_ != nullptr) dispatcher_.releaseManifold(manifold_);
@@ -121,6 +122,25 @@ bool WholeManifold::has_near(const btVector3& on_b) const {
     if (manifold_->getContactPoint(i).m_positionWorldOnB.distance2(on_b) < near2) return true;
   }
   return false;
+}
+
+WholeContacts::WholeContacts(const btCollisionAlgorithmConstructionInfo& info, const WholeContactsMaker& maker,
+                             const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b)
+    : btCollisionAlgorithm(info),
+      maker_(maker),
+      manifold_(*info.m_dispatcher1, contact_margin(a, b, maker.margin_m())) {}
+
+void WholeContacts::getAllContactManifolds(btManifoldArray& manifolds) {
+  if (manifold_.get() != nullptr) manifolds.push_back(manifold_.get());
+}
+
+bool WholeContacts::give_manifold(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, bool touches,
+                                  btManifoldResult& result) {
+  if (touches || maker_.makes_all_manifolds()) manifold_.make(a, b);
+  if (manifold_.get() == nullptr) return false;
+  result.setPersistentManifold(manifold_.get());
+  if (!touches) manifold_.get()->clearManifold();
+  return touches;
 }
 
 }  // namespace aurasim::physics

@@ -9,6 +9,8 @@
 #include <cstddef>
 #include <span>
 
+#include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
+#include <BulletCollision/CollisionDispatch/btCollisionCreateFunc.h>
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
 #include "physics/contact_features.h"
@@ -24,12 +26,9 @@ struct NamedPoint {
   ContactFeatures features;
 };
 
-/// Largest gap of a contact of these two, m: at most `most_m`, and less for small bodies, as Bullet has it.
-double contact_margin(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, double most_m);
-
 class WholeManifold {
  public:
-  /// `margin_m`: as contact_margin() gives it. `dispatcher` has to outlive the manifold.
+  /// `margin_m`: largest gap of a contact of the pair. `dispatcher` has to outlive the manifold.
   WholeManifold(btDispatcher& dispatcher, double margin_m) : dispatcher_(dispatcher), margin_(margin_m) {}
   ~WholeManifold();
   WholeManifold(const WholeManifold&) = delete;
@@ -54,6 +53,49 @@ class WholeManifold {
   btDispatcher& dispatcher_;
   const double margin_;
   btPersistentManifold* manifold_ = nullptr;
+};
+
+/// Makes the algorithms of pairs whose points are all found at once.
+class WholeContactsMaker : public btCollisionAlgorithmCreateFunc {
+ public:
+  /// `margin_m`: largest gap of a contact. Contacts of small bodies have smaller gaps.
+  explicit WholeContactsMaker(double margin_m) : margin_(margin_m) {}
+
+  /// While this is set, pairs get a manifold also if they do not touch.
+  void make_all_manifolds(bool wanted) { makes_all_manifolds_ = wanted; }
+  bool makes_all_manifolds() const { return makes_all_manifolds_; }
+  double margin_m() const { return margin_; }
+
+ private:
+  const double margin_;
+  bool makes_all_manifolds_ = false;
+};
+
+/// The algorithm of one such pair, but for how the points are found.
+class WholeContacts : public btCollisionAlgorithm {
+ public:
+  /// `maker` has to outlive the algorithm.
+  WholeContacts(const btCollisionAlgorithmConstructionInfo& info, const WholeContactsMaker& maker,
+                const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b);
+
+  /// Not called: fast bodies are stopped by casts.
+  btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
+                                 btManifoldResult*) override {
+    return 1;
+  }
+  void getAllContactManifolds(btManifoldArray& manifolds) override;
+
+ protected:
+  const WholeManifold& manifold() const { return manifold_; }
+  WholeManifold& manifold() { return manifold_; }
+  /// Gives the pair's manifold, if there is one, to `result`. Returns `touches`; if that is false the manifold is
+  /// emptied, else it is there, and the caller puts the points.
+  bool give_manifold(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, bool touches,
+                     btManifoldResult& result);
+
+ private:
+  const WholeContactsMaker& maker_;
+  WholeManifold manifold_;
 };
 
 }  // namespace aurasim::physics

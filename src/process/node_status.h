@@ -33,7 +33,7 @@ class FrameWindow {
   std::vector<double> frame_, physics_, protocol_, transport_, exchange_;
 };
 
-/// What others wait for in a status, beside the node's state.
+/// The part of a status that others wait for, beside the node's state.
 struct Awaited {
   core::Generation generation = 0;
   std::optional<core::Step> holds_at;

@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "rtps/datagram_findings.h"
+#include "rtps/wire_cursor.h"
 
 namespace aurasim::rtps {
 namespace {
@@ -11,32 +12,25 @@ constexpr std::size_t kHeader_B = 20, kSubmessageHeader_B = 4;
 constexpr std::uint8_t kInfoTimestamp = 0x09, kInfoDestination = 0x0e, kData = 0x15;
 constexpr std::uint8_t kLittleEndian = 0x01, kHasData = 0x04;
 
-/// Number in four octets in the given order.
-std::uint32_t number_at(std::span<const std::uint8_t> bytes, std::size_t at, bool little) {
-  std::uint32_t number = 0;
-  for (std::size_t i = 0; i < 4; ++i) number = number << 8 | bytes[at + (little ? 3 - i : i)];
-  return number;
-}
-
 }  // namespace
 
 std::optional<std::uint64_t> announcement_in(std::span<const std::uint8_t> datagram) {
-  std::size_t at = kHeader_B;
-  while (at + kSubmessageHeader_B <= datagram.size()) {
-    const std::uint8_t kind = datagram[at], flags = datagram[at + 1];
-    const bool little = (flags & kLittleEndian) != 0;
-    const std::size_t size =
-        little ? datagram[at + 2] | datagram[at + 3] << 8 : datagram[at + 2] << 8 | datagram[at + 3];
-    const std::size_t body = at + kSubmessageHeader_B;
+  if (datagram.size() < kHeader_B) return std::nullopt;
+  WireCursor rest(datagram, kHeader_B, datagram.size(), false);
+  while (rest.left() >= kSubmessageHeader_B) {
+    const std::uint8_t kind = rest.u8(), flags = rest.u8();
+    rest.set_little((flags & kLittleEndian) != 0);
+    const std::size_t size = rest.u16();
     if (kind == kData) {
-      const bool is_last = size == 0 || body + size == datagram.size();
-      // extra flags, octets to inline QoS, reader, writer, sequence number
-      if (!is_last || (flags & kHasData) == 0 || body + 20 > datagram.size()) return std::nullopt;
-      if (number_at(datagram, body + 8, false) != kParticipantWriter) return std::nullopt;
-      return std::uint64_t{number_at(datagram, body + 12, little)} << 32 | number_at(datagram, body + 16, little);
+      const bool is_last = size == 0 || size == rest.left();
+      if (!is_last || (flags & kHasData) == 0) return std::nullopt;
+      rest.skip(8);  // extra flags, octets to inline QoS, reader
+      const std::uint32_t writer = rest.entity();
+      const std::uint64_t number = rest.sequence_number();
+      return rest.failed() || writer != kParticipantWriter ? std::nullopt : std::optional(number);
     }
     if (kind != kInfoTimestamp && kind != kInfoDestination) return std::nullopt;
-    at = body + size;
+    rest.skip(size);
   }
   return std::nullopt;
 }

@@ -55,7 +55,7 @@ TEST_F(NodeEndingTest, ASlowWorldIsLeftToReachTheStateInWhichAllStop) {
   EXPECT_EQ(first_deed(20s, 1).urge, Urge::kNone);
 }
 
-/// Of 80 nodes each publishes its state every 800 ms: a step that has not grown meanwhile says nothing.
+/// A node of 80 publishes its state every 800 ms. A step that has not grown meanwhile says nothing.
 TEST_F(NodeEndingTest, ASlowWorldOfManyNodesIsLeftToReachItToo) {
   is_seen(messages::NodeState::kRunning);
   ending_ = NodeEnding(begin_, 80);

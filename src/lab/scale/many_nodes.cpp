@@ -26,7 +26,7 @@ Rain rain_of(const ManyNodes& many) {
   return rain;
 }
 
-/// What all nodes have done.
+/// The work of all nodes together.
 struct Sums {
   double physics_s = 0, protocol_s = 0, transport_s = 0;
   std::uint64_t steps = 0;
@@ -113,12 +113,13 @@ std::optional<core::WorldCut> world_after_deaths(const ManyNodes& many, const co
 
 std::optional<NodeCosts> measure_many_nodes(const ManyNodes& many, const RainPlace& place,
                                             const std::function<bool(double)>& shown) {
-  std::vector<std::string> settings = rain_of(many).overrides();
+  const Rain rain = rain_of(many);
+  std::vector<std::string> settings = rain.overrides();
   settings.emplace_back("time.sync=deterministic");
   const config::Launch launch = config::read_launch(place.launch_file, settings);
-  ClusterRules rules = rules_of(rain_of(many), launch, place);
+  ClusterRules rules = rules_of(rain, launch, place);
   rules.hash_states = true;
-  const core::Step last = rain_of(many).steps(launch.step_s());
+  const core::Step last = rain.steps(launch.step_s());
   std::optional<core::WorldCut> world;
   if (many.deaths > 0) {
     world = world_after_deaths(many, launch, rules, last / 2, shown);

@@ -1,4 +1,4 @@
-// What a node costs in a world that grows with the number of nodes: hundreds of nodes in virtual time, in one thread.
+// Costs of a node in a world that grows with the number of nodes: hundreds of nodes in virtual time, in one thread.
 #pragma once
 
 #include <cstddef>

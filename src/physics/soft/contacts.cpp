@@ -66,8 +66,8 @@ bool bounds_overlap(const btBroadphasePair& pair) {
   return !is_plane(b) || !is_above(a, body_of(b));
 }
 
-/// What is known of a pair for as long as it lasts. Kept in a field of the pair that Bullet does not use, because
-/// reading the bodies would miss the cache. All 0: not known yet.
+/// Facts about a pair that hold as long as it lasts. They are kept in a field of the pair that Bullet does not use,
+/// because reading the bodies would miss the cache. All 0: not known yet.
 struct PairNote {
   static constexpr std::uint32_t kKnown = 1u << 31, kMayTouch = 1u << 30, kSlot = kMayTouch - 1;
 
