@@ -49,8 +49,8 @@ Range Aura::meet_range(const Path& foreign, int hops) const {
 Range Aura::link_range(int hops) const { return by_speed(reach(steps(Question::kLink, hops), 0)); }
 
 double Aura::listening_distance_m(double largest_radius_m) const {
-  constexpr int kHops = 1 + horizon::kHomewardHops;
-  return zone(rules_.top_speed_m_s, kHops, rules_.top_speed_m_s, largest_radius_m) + largest_radius_m;
+  return zone(rules_.top_speed_m_s, 1 + rules_.homeward_hops(), rules_.top_speed_m_s, largest_radius_m) +
+         largest_radius_m;
 }
 
 /// For how long the body of `path` will have moved `steps` from now, in seconds. 0 or less: it has not moved yet.

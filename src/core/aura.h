@@ -7,6 +7,7 @@
 
 #include "core/body_state.h"
 #include "core/clearance.h"
+#include "core/horizon.h"
 
 namespace aurasim::core {
 
@@ -44,6 +45,10 @@ struct AuraRules {
   /// to a redo: each further hop lets links reach farther, and dense worlds come to be one cluster
   /// (docs/decisions/0033-no-pushes.md).
   bool pulls_chain() const { return !redo; }
+  /// So many hops more than usual a cluster looks before it goes home, and auras are announced so much earlier. Where
+  /// states are checked it is none: in dense worlds, clusters that are in no hurry fill the neighbours' regions
+  /// (docs/decisions/0046-home-soon.md).
+  int homeward_hops() const { return pulls_chain() ? horizon::kHomewardHops : 0; }
   /// At how many instants of each step of two paths an aura tests whether the bodies touch.
   int instants() const { return looks_ahead() ? 4 : looks(); }
 };

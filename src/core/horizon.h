@@ -12,8 +12,9 @@ namespace aurasim::core::horizon {
 /// Four regions meet at a corner of a grid: a pull can come through three others. Looking further ahead has made no
 /// difference in any run, and costs time (docs/decisions/0006-hops.md).
 inline constexpr int kMostHops = 3;
-/// A cluster goes home only if nothing is expected to meet it for K steps more than an aura looks ahead. For that long,
-/// the others may act upon auras from before it left. So auras have to be announced K steps earlier, too.
+/// A cluster goes home only if no body that stays may touch it for K steps more than clusters look ahead: it would be
+/// pulled back at once. Where states are not checked, nothing foreign may be expected to meet it for as long, because
+/// the others may act upon auras from before it left; so auras have to be announced K steps earlier, too.
 inline constexpr int kHomewardHops = 1;
 
 // Looking ahead.
@@ -63,9 +64,10 @@ constexpr Step ghost(int lookahead) { return 2 * lookahead; }
 /// Number of states for which the promise of an aura has to hold: others act upon it until it is K states old, and what
 /// they decide takes effect K states later.
 constexpr Step promise(int lookahead) { return 2 * lookahead; }
-/// A cluster has to be an island for so many states in a row before it goes home. By then all that was sent because of
-/// its earlier place has arrived and was looked at.
-constexpr Step homecoming(int lookahead) { return 2 * lookahead + 1; }
+/// A cluster has to be an island for so many states in a row before it goes home. After K states, all that others have
+/// sent because of it has arrived. Where states are not checked it waits until what they sent because of its earlier
+/// place has been looked at, too.
+constexpr Step homecoming(int lookahead, bool checked) { return checked ? lookahead + 1 : 2 * lookahead + 1; }
 /// For so many steps a broken promise can spoil decisions: until its auras and hand-offs are replaced, and both looks
 /// ahead are over.
 constexpr Step blame(int lookahead) { return 6 * lookahead + 2; }

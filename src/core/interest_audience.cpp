@@ -15,10 +15,16 @@ Rectangle box_of(const Vec3& p, const Vec3& q) {
 }  // namespace
 
 Audience InterestMatching::audience(std::uint32_t i) const {
-  const Vec3& p = own_.path(i).pose.p_WB;
-  if (announced_to_all_[i] || !vicinity_.home().contains(p.x(), p.y())) return kAllListeners;
+  if (announced_to_all_[i] || is_out_alone(own_.path(i).pose.p_WB)) return kAllListeners;
   const Audience near = noticed_by_[i] | owners_in_zone(i);
   return near != kNobodyListens && has_narrow_regions_ ? kAllListeners : near;
+}
+
+/// Is `p` outside our region, where nobody compares what others host there? The owner of the place does, if it checks
+/// states and is alive.
+bool InterestMatching::is_out_alone(const Vec3& p) const {
+  if (vicinity_.home().contains(p.x(), p.y())) return false;
+  return !aura_.rules().redo || !std::ranges::binary_search(live_, vicinity_.map.owner(p));
 }
 
 double InterestMatching::band(double speed_m_s, int hops) const {
@@ -27,7 +33,7 @@ double InterestMatching::band(double speed_m_s, int hops) const {
 
 /// Where pulls do not chain, zones do not depend on clusters. So they are known before bodies are compared.
 void InterestMatching::find_zones() {
-  widest_band_m_ = band(top_speed(), clusters_.most_hops() + horizon::kHomewardHops);
+  widest_band_m_ = band(top_speed(), clusters_.most_hops() + aura_.rules().homeward_hops());
   for (const std::uint32_t i : own_.close()) zones_[i] = zone_of(i);
 }
 
@@ -36,7 +42,7 @@ Audience InterestMatching::zone_of(std::uint32_t i) const {
   const Path& path = own_.path(i);
   const Vec3& p = path.pose.p_WB;
   if (vicinity_.deep_inside(p, widest_band_m_ + path.radius_m)) return kNobodyListens;
-  const int hops = clusters_.hops(i) + horizon::kHomewardHops;
+  const int hops = clusters_.hops(i) + aura_.rules().homeward_hops();
   if (!aura_.rules().redo || !aura_.predicts()) {
     return vicinity_.within(p, band(path.speed_m_s, hops) + path.radius_m);
   }

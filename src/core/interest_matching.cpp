@@ -12,17 +12,10 @@ namespace aurasim::core {
 
 namespace {
 
-using horizon::kHomewardHops;
-
 /// Are two spheres, around `p` and `other`, at most `distance_m` apart?
 bool is_within(const Vec3& p, double radius_m, const Vec3& other, double other_radius_m, double distance_m) {
   const double reach = radius_m + other_radius_m + distance_m;
   return reach >= 0 && (p - other).squaredNorm() <= reach * reach;
-}
-
-/// True if an own cluster that so far would go to `other` goes to `host` instead. False if `host` is not among `live`.
-bool pulls_from(RegionId host, RegionId other, std::span<const RegionId> live) {
-  return host < other && std::binary_search(live.begin(), live.end(), host);
 }
 
 }  // namespace
@@ -49,7 +42,7 @@ void InterestMatching::look(const Snapshot& snapshot, std::span<const Neighbour>
     find_zones();
   }
   pair_up();
-  if (pulls_chain()) widest_band_m_ = band(top_speed(), clusters_.most_hops() + kHomewardHops);
+  if (pulls_chain()) widest_band_m_ = band(top_speed(), clusters_.most_hops() + homeward_hops());
   judge();
 }
 
@@ -133,9 +126,9 @@ void InterestMatching::mark_regions() {
   const bool chains = pulls_chain();
   const double top_speed = std::max(NearIndex::kSlow, own_.top_speed());
   others_top_radius_ = std::max(others_top_radius_, own_.top_radius());
-  const double slow_band = band(NearIndex::kSlow, 1 + kHomewardHops);
-  const double fast_band = band(top_speed, 1 + kHomewardHops);
-  own_.find_close(std::max(0.0, band(top_speed, horizon::kMostHops + kHomewardHops)));
+  const double slow_band = band(NearIndex::kSlow, 1 + homeward_hops());
+  const double fast_band = band(top_speed, 1 + homeward_hops());
+  own_.find_close(std::max(0.0, band(top_speed, horizon::kMostHops + homeward_hops())));
   for (const std::uint32_t i : own_.close()) {
     const Path& path = own_.path(i);
     const bool slow = path.speed_m_s <= NearIndex::kSlow;
@@ -154,26 +147,6 @@ void InterestMatching::mark_regions() {
 void InterestMatching::complete_near_boundaries() {
   for (const std::uint32_t i : near_) clusters_.complete(i);
   for (const std::uint32_t i : expecting_) clusters_.complete(i);
-}
-
-/// Applies the pairs that a redo brings together. Two of our bodies are treated as if a joint held them. One of ours
-/// and a foreign one are treated as if their auras met.
-void InterestMatching::bring_together(const Snapshot& snapshot) {
-  joined_.clear();
-  expecting_.clear();
-  together_pairs_.clear();
-  for (const TogetherPair& pair : together_) {
-    if (pair.until < snapshot.step) continue;
-    const std::optional<std::uint32_t> a = own_.find(pair.a);
-    const std::optional<std::uint32_t> b = own_.find(pair.b);
-    if (a && b) joined_.push_back({*a, *b});
-    for (const auto& [own, other] : {std::pair(a, pair.b), std::pair(b, pair.a)}) {
-      if (!own) continue;
-      expecting_.push_back(*own);
-      if (const std::optional<std::uint32_t> foreign = foreign_.find(other))
-        together_pairs_.push_back({*foreign, *own});
-    }
-  }
 }
 
 /// Finds foreign auras and our bodies near them. A cluster that is completed here may turn out to have more hops and
@@ -229,7 +202,7 @@ void InterestMatching::notice_grown() {
 /// Fills places_ with the bodies of the block, and ranges_ with range_of(body, hops) of them, from `least_hops` on.
 template <class RangeOf>
 void InterestMatching::take_ranges(const ForeignBlock& block, int least_hops, RangeOf&& range_of) {
-  const int most_hops = clusters_.most_hops() + kHomewardHops;
+  const int most_hops = clusters_.most_hops() + homeward_hops();
   places_.clear();
   ranges_.clear();
   least_hops_ = pulls_chain() ? 0 : least_hops;
@@ -263,12 +236,12 @@ void InterestMatching::notice(const ForeignBlock& block) {
   const auto knows = [&](std::uint32_t i) {
     return ((noticed_by_[i] | zones_[i]) & region) == region && (noticed_[i] || region != kNobodyListens);
   };
-  take_ranges(block, clusters_.most_hops() + kHomewardHops,
+  take_ranges(block, clusters_.most_hops() + homeward_hops(),
               [&](const Path& path, int hops) { return aura_.notice(path.speed_m_s, path.age_steps, hops); });
   candidates_.clear();
   const auto range_at = [this](double speed_m_s) { return widest_range(speed_m_s); };
   clusters_.near().for_each_near(block.lo, block.hi, range_at, [&](std::uint32_t i) {
-    if (!knows(i)) candidates_.push_back(candidate(i, own_.path(i).speed_m_s, kHomewardHops));
+    if (!knows(i)) candidates_.push_back(candidate(i, own_.path(i).speed_m_s, homeward_hops()));
   });
   for (const Candidate& c : candidates_) {
     for (std::size_t k = 0; k < places_.size(); ++k) {
@@ -300,7 +273,7 @@ InterestMatching::Candidate InterestMatching::candidate(std::uint32_t own, doubl
 template <class Visit>
 void InterestMatching::for_each_foreign_near(std::uint32_t own, Visit&& visit) const {
   const Path& path = own_.path(own);
-  const int hops = clusters_.hops(own) + kHomewardHops;
+  const int hops = clusters_.hops(own) + homeward_hops();
   const auto range = [&](double speed_m_s) {
     return aura_.notice(speed_m_s, foreign_.oldest_steps(), hops).at(path.speed_m_s) + foreign_.most_blur_m();
   };
@@ -310,7 +283,7 @@ void InterestMatching::for_each_foreign_near(std::uint32_t own, Visit&& visit) c
 /// Looks again for foreign bodies near body `own`, which has more hops than before.
 void InterestMatching::notice_again(std::uint32_t own) {
   const Path& path = own_.path(own);
-  const int hops = clusters_.hops(own) + kHomewardHops;
+  const int hops = clusters_.hops(own) + homeward_hops();
   for_each_foreign_near(own, [&](std::uint32_t f) {
     const Foreign& foreign = foreign_[f];
     const Audience region = vicinity_.bit_of(foreign.host);
@@ -325,7 +298,7 @@ void InterestMatching::notice_again(std::uint32_t own) {
 }
 
 /// Finds pairs of a foreign and an own body that may meet. Such bodies have been noticed before, because meetings reach
-/// less far than notice. Of those that have a way home, also pairs that may meet one hop later (judge_expected()).
+/// less far than notice. Of those that have a way home, also pairs that may meet some hops later (judge_expected()).
 ///
 /// Where pulls do not chain, a host that pulls nothing from here matters to our bodies outside our region only: it
 /// keeps them from going home.
@@ -335,9 +308,9 @@ void InterestMatching::find_pairs(const ForeignBlock& block) {
   candidates_.clear();
   const auto range_at = [&](double speed_m_s) { return widest_range(drift * speed_m_s); };
   const auto take = [&](std::uint32_t i) {
-    candidates_.push_back(candidate(i, aura_.drift_m_s(own_.path(i)), outside(i) ? kHomewardHops : 0));
+    candidates_.push_back(candidate(i, aura_.drift_m_s(own_.path(i)), outside(i) ? homeward_hops() : 0));
   };
-  if (pulls_chain() || pulls_from(block.host, vicinity_.self, live_)) {
+  if (pulls_chain() || pulls_from(block.host, vicinity_.self)) {
     clusters_.near().for_each_near(block.lo, block.hi, range_at, take);
   } else {
     std::ranges::for_each(near_, take);
@@ -347,62 +320,6 @@ void InterestMatching::find_pairs(const ForeignBlock& block) {
       if (is_in_range(k, c)) pairs_.push_back({block.bodies[k], c.own});
     }
   }
-}
-
-void InterestMatching::judge() {
-  hits_.clear();
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    Progress::mark_now_and_then(i);
-    judge(pairs_[i]);
-  }
-  for (const Pair& pair : together_pairs_) {
-    hits_.push_back({pair.own, foreign_[pair.foreign].host});
-    hit(pair.own, foreign_[pair.foreign].host);
-  }
-  if (!pulls_chain()) complete_hit_clusters();
-  for (const Pair& pair : pairs_) judge_expected(pair);
-}
-
-/// Completes the clusters that an aura met, and those that may have to go home. Their bodies were judged as members of
-/// smaller clusters, held together by contacts and joints only.
-void InterestMatching::complete_hit_clusters() {
-  for (const Hit& hit : hits_) clusters_.complete(hit.own);
-  complete_near_boundaries();
-  clear_judged();
-  for (const Hit& each : hits_) hit(each.own, each.host);
-}
-
-/// Notes that an aura of `host` met the cluster of body `own`. The host keeps the foreign body, or our cluster goes to
-/// it.
-void InterestMatching::hit(std::uint32_t own, RegionId host) {
-  const std::uint32_t cluster = clusters_.of(own);
-  touched_[cluster] = 1;
-  judged_.push_back(cluster);
-  if (pulls_from(host, pulled_to_[cluster], live_)) pulled_to_[cluster] = host;
-}
-
-bool InterestMatching::meets(const Foreign& foreign, const Path& own, int hops) const {
-  return foreign.ghost ? aura_.meets_ghost(foreign.path, own, hops) : aura_.meets(foreign.path, own, hops);
-}
-
-void InterestMatching::judge(const Pair& pair) {
-  const Foreign& f = foreign_[pair.foreign];
-  const Path& own = own_.path(pair.own);
-  const std::uint32_t cluster = clusters_.of(pair.own);
-  const int hops = clusters_.hops(pair.own);
-  const bool pulls = pulls_from(f.host, pulled_to_[cluster], live_);
-  if ((touched_[cluster] && !pulls) || !meets(f, own, hops)) return;
-  hits_.push_back({pair.own, f.host});
-  hit(pair.own, f.host);
-}
-
-void InterestMatching::judge_expected(const Pair& pair) {
-  const std::uint32_t cluster = clusters_.of(pair.own);
-  if (!outside(pair.own) || touched_[cluster] || expected_[cluster]) return;
-  const int hops = clusters_.hops(pair.own) + kHomewardHops;
-  if (!meets(foreign_[pair.foreign], own_.path(pair.own), hops)) return;
-  expected_[cluster] = 1;
-  judged_.push_back(cluster);
 }
 
 }  // namespace aurasim::core

@@ -41,15 +41,15 @@ class InterestMatching {
   /// Bodies that may have an audience, or be outside; ascending. All others have none and are inside.
   std::span<const std::uint32_t> near_others() const { return near_others_; }
 
-  /// The regions that have to know of body i, because it is near their territory or near a body that they host. All
-  /// listeners if the body's centre is outside our region: they may host bodies out there that we do not know.
+  /// The regions that have to know of body i, because it is near their territory or near a body that they host.
   Audience audience(std::uint32_t i) const;
   /// No part of the body's bounding sphere is over its host's region (kNone: its centre is not).
   bool outside(std::uint32_t i) const;
   /// An aura from elsewhere has met the cluster of body i.
   bool touched(std::uint32_t i) const { return touched_[clusters_.of(i)] != 0; }
   /// A foreign aura may meet the cluster so soon that another node could already be sending bodies here because of it.
-  /// A cluster that goes home then would pass them on the way. Only known for bodies outside our region.
+  /// A cluster that goes home then would pass them on the way. Only known for bodies outside our region, and where
+  /// states are not checked: elsewhere a redo costs less than such clusters that stay.
   bool expected(std::uint32_t i) const { return expected_[clusters_.of(i)] != 0; }
   /// The lowest host among the auras that met the cluster, if it is lower than ours; otherwise our own region.
   RegionId pulled_to(std::uint32_t i) const { return pulled_to_[clusters_.of(i)]; }
@@ -99,11 +99,14 @@ class InterestMatching {
   void judge(const Pair& pair);
   void judge_expected(const Pair& pair);
   void hit(std::uint32_t own, RegionId host);
+  bool pulls_from(RegionId host, RegionId other) const;
   void complete_hit_clusters();
   bool pulls_chain() const { return aura_.rules().pulls_chain(); }
+  int homeward_hops() const { return aura_.rules().homeward_hops(); }
   Audience owners_in_zone(std::uint32_t i) const { return pulls_chain() ? zone_of(i) : zones_[i]; }
   void find_zones();
   Audience zone_of(std::uint32_t i) const;
+  bool is_out_alone(const Vec3& p) const;
   void bring_together(const Snapshot& snapshot);
   bool meets(const Foreign& foreign, const Path& own, int hops) const;
   double band(double speed_m_s, int hops) const;

@@ -113,7 +113,7 @@ void Protocol::decide_naively(std::uint32_t i, const Snapshot& snapshot) {
   }
 }
 
-/// Has the cluster of body i been an island for 2K+1 states in a row?
+/// Has the cluster of body i been an island for long enough?
 bool Protocol::settles_elsewhere(std::uint32_t i, Step now) {
   bool island = !matching_.touched(i) && !matching_.expected(i);
   if (island) {
@@ -129,7 +129,7 @@ bool Protocol::settles_elsewhere(std::uint32_t i, Step now) {
     }
     since = std::max(since, track.island_since);
   });
-  return island && now - since >= horizon::homecoming(aura_->rules().lookahead);
+  return island && now - since >= horizon::homecoming(aura_->rules().lookahead, aura_->rules().redo);
 }
 
 RegionId Protocol::lowest_owner(std::uint32_t i) const {

@@ -14,6 +14,7 @@
 #include "core/near_index.h"
 #include "core/neighbour.h"
 #include "core/redo.h"
+#include "core/step_motion.h"
 #include "core/vicinity.h"
 
 namespace aurasim::core {
@@ -69,12 +70,6 @@ class StateCheck {
     Vec3 middle = Vec3::Zero();
     double reach_m = 0;
   };
-  /// A body on its way through one step.
-  struct Motion {
-    Path at_start, at_end;
-    double stray_m = 0;  ///< how far its surface may be off the straight way in between
-  };
-
   State& state(Step step);
   void take_changes(const OwnBodies& own, State& now);
   void take_all(const OwnBodies& own, State& now);
@@ -93,15 +88,10 @@ class StateCheck {
   double reach_at_most(const Path& end, double apart, double fastest) const;
   Way way(const Sighting& now, const Sighting* before) const;
   void compare_with_others(const Way& one, std::uint32_t from);
-  Motion motion(const Sighting& now, const Sighting* before) const;
-  bool touch(const Motion& a, const Motion& b) const;
-  bool meet_ahead(const Motion& a, const Motion& b, double allowed_m) const;
-  bool meet_on(const Pose& a, const Pose& b, const Motion& of_a, const Motion& of_b, const Vec3& way,
-               double allowed_m) const;
-  bool sweeps_into(const Motion& moving, const Motion& other, double share, double allowed_m) const;
-  Pose pose(const Motion& motion, double share) const;
+  bool touch(const Way& a, const Way& b) const;
 
   const Aura& aura_;
+  const StepMotions motions_;
   const Vicinity& vicinity_;
   Step checked_;
   Step whole_;  ///< nothing is missing of states up to this one, in which the run stood

@@ -26,18 +26,22 @@ class Arrival : public ProtocolTest {
   }
   bool is_here() const { return !snapshot.bodies.empty(); }
 
-  const Step island = 2 * settings.aura.lookahead + 2;
+  Step island() const { return horizon::homecoming(settings.aura.lookahead, settings.aura.redo) + 1; }
 };
 
 TEST_F(Arrival, GoesHomeAsSoonAsItIsAnIsland) {
-  for (const HandOffReason why : {HandOffReason::kBoundaryTraversal, HandOffReason::kAuraCollision}) {
-    snapshot = {};
-    now = 0;
-    arrive(why);
-    pass_steps_until(island - 1);
-    EXPECT_TRUE(is_here());
-    pass_steps_until(island);
-    EXPECT_FALSE(is_here());
+  for (const bool checked : {false, true}) {
+    for (const HandOffReason why : {HandOffReason::kBoundaryTraversal, HandOffReason::kAuraCollision}) {
+      SCOPED_TRACE(checked);
+      settings.aura.redo = checked;
+      snapshot = {};
+      now = 0;
+      arrive(why);
+      pass_steps_until(island() - 1);
+      EXPECT_TRUE(is_here());
+      pass_steps_until(island());
+      EXPECT_FALSE(is_here());
+    }
   }
 }
 
@@ -66,7 +70,7 @@ TEST_F(Arrival, GoesHomeOnlyIfNobodyWhoStaysMayMeetItSoon) {
     const bool one_cluster = clusters.of(0) == clusters.of(1);
     const bool meets_soon = clusters.any_near(0, horizon::kHomewardHops, [](std::uint32_t) { return true; });
     in_between += meets_soon ? 1 : 0;
-    while (now < 3 * island) {
+    while (now < 3 * island()) {
       const auto last = static_cast<std::uint32_t>(snapshot.bodies.size() - 1);
       snapshot.contacts = {{last - 1, last}};
       pass_step();

@@ -191,6 +191,16 @@ TEST_P(ProjectionTest, ABodyOutsideItsRegionIsKnownToAllListeners) {
   EXPECT_TRUE(known_to(kRight).contains(kBody)) << "it may host bodies over the middle region, too";
 }
 
+/// There the owner of the place compares the bodies that others host over it.
+TEST_P(ProjectionTest, WhereStatesAreCheckedABodyOutsideItsRegionGoesToThoseInWhoseZoneItIs) {
+  rules.redo = true;
+  make_world(RegionMap::columns(3, 100));
+  place_flying(kBody, Vec3(-50.6, 0, 0), Vec3(12, 0, 0));
+  world->start();
+  while (world->protocol(kWest).projection().find(kBody)->phase != Phase::kBoundaryTraversed) world->step();
+  EXPECT_EQ(update_of(kBody, kWest)->audience, audience_of(kMiddle));
+}
+
 TEST_P(ProjectionTest, ASleepingBodyIsPublishedAgainForARegionWhoseBodyComesNear) {
   make_world(RegionMap::columns(3, 100));
   place_at(BodyId{3}, Vec3(0, 0, 0));  // at home in the middle

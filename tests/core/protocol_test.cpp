@@ -102,13 +102,29 @@ TEST_F(ProtocolTest, ABodyThatAnotherNodeHostsTooIsAnnouncedToAll) {
   EXPECT_EQ(protocol->outbox().aura.updates[0].audience, kAllListeners);
 }
 
+/// Nobody at the place of such a body would compare it with what others host there.
+TEST_F(ProtocolTest, ABodyOverADeadRegionIsAnnouncedToAll) {
+  settings.aura.redo = true;
+  host(1, Vec3(20, 0, 0)).epoch = 1;
+  start(0);
+  receive_batch_of_1();
+  ASSERT_EQ(protocol->outbox().aura.updates.size(), 1u);
+  EXPECT_EQ(protocol->outbox().aura.updates[0].audience, audience_of(RegionId{1}));
+  inbox.peers.push_back({region(1), PeerChange::kLost});
+  protocol->accept(inbox);
+  receive_next();
+  observe();
+  ASSERT_EQ(protocol->outbox().aura.updates.size(), 1u);
+  EXPECT_EQ(protocol->outbox().aura.updates[0].audience, kAllListeners);
+}
+
 TEST_F(ProtocolTest, WhereStatesAreCheckedABodyThatFliesAwayFromTheBorderIsNotAnnounced) {
   const auto announced = [this](bool checked) {
     snapshot.bodies.clear();
     now = 0;
     settings.aura.redo = checked;
-    host(1, Vec3(-3.2, 0, 0), Vec3(20, 0, 0));
-    host(2, Vec3(-3.2, 30, 0), Vec3(-20, 0, 0));
+    host(1, Vec3(-2.2, 0, 0), Vec3(20, 0, 0));
+    host(2, Vec3(-2.2, 30, 0), Vec3(-20, 0, 0));
     start(0);
     pass_step();
     std::vector<BodyId> ids;

@@ -28,11 +28,11 @@ AuraRules rules_of_check() {
 /// We are the left of two columns; body 1 is ours and stands at the border, the others are of region 1.
 class TheCheck : public ::testing::Test {
  protected:
-  void publish(Step stamp, std::vector<AuraRecord> updates) {
-    AuraBatch sent = batch(1, stamp);
+  void publish(Step stamp, std::vector<AuraRecord> updates, std::uint32_t source = 1) {
+    AuraBatch sent = batch(source, stamp);
     sent.full = stamp == 0;
     sent.updates = std::move(updates);
-    neighbours_[0].accept(std::move(sent), [this](const Neighbour& now) { check_.take(now); });
+    neighbours_.at(source - 1).accept(std::move(sent), [this](const Neighbour& now) { check_.take(now); });
   }
   AuraRecord body(std::uint64_t id, Step stamp, const Vec3& p, const Vec3& v = Vec3::Zero()) const {
     AuraRecord record;
@@ -115,6 +115,24 @@ TEST_F(TheCheck, SaysNothingOfTwoThatOneNeighbourHosts) {
     publish(step, {body(2, step, {1.2, 0, 0}), body(3, step, {1.3, 0, 0})});
     EXPECT_THAT(look(step + 1), IsEmpty());
   }
+}
+
+/// Hosts announce a body outside their region to the owner of its place, and not to all others who host bodies there.
+TEST_F(TheCheck, FindsATouchOfTwoThatTwoNeighboursHostOverOurRegion) {
+  neighbours_.emplace_back(region(2), region(0));
+  ours_at_ = {-8, 0, 0};
+  AuraRecord other = body(3, 0, {-3.1, 0, 0});
+  other.host = RegionId{2};
+  for (Step step = 0; step < 2; ++step) {
+    other.stamp = step;
+    publish(step, {body(2, step, {-4, 0, 0})});
+    publish(step, {other}, 2);
+    look(step + 1);
+  }
+  const auto found = check_.found();
+  ASSERT_THAT(found, SizeIs(1));
+  EXPECT_EQ(found[0].a, BodyId{2});
+  EXPECT_EQ(found[0].b, BodyId{3});
 }
 
 TEST_F(TheCheck, KnowsThatABodyTouchesNothingBeforeTheStateAfterItsBirth) {

@@ -1,0 +1,92 @@
+// Which foreign auras meet our clusters, and which hosts they pull them to (docs/design.md, "Who leaves").
+#include <algorithm>
+#include <optional>
+
+#include "core/interest_matching.h"
+#include "core/progress.h"
+
+namespace aurasim::core {
+
+/// Applies the pairs that a redo brings together. Two of our bodies are treated as if a joint held them. One of ours
+/// and a foreign one are treated as if their auras met.
+void InterestMatching::bring_together(const Snapshot& snapshot) {
+  joined_.clear();
+  expecting_.clear();
+  together_pairs_.clear();
+  for (const TogetherPair& pair : together_) {
+    if (pair.until < snapshot.step) continue;
+    const std::optional<std::uint32_t> a = own_.find(pair.a);
+    const std::optional<std::uint32_t> b = own_.find(pair.b);
+    if (a && b) joined_.push_back({*a, *b});
+    for (const auto& [own, other] : {std::pair(a, pair.b), std::pair(b, pair.a)}) {
+      if (!own) continue;
+      expecting_.push_back(*own);
+      if (const std::optional<std::uint32_t> foreign = foreign_.find(other))
+        together_pairs_.push_back({*foreign, *own});
+    }
+  }
+}
+
+/// True if an own cluster that so far would go to `other` goes to `host` instead. A host that is dead pulls nothing.
+bool InterestMatching::pulls_from(RegionId host, RegionId other) const {
+  return host < other && std::ranges::binary_search(live_, host);
+}
+
+void InterestMatching::judge() {
+  hits_.clear();
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    Progress::mark_now_and_then(i);
+    judge(pairs_[i]);
+  }
+  for (const Pair& pair : together_pairs_) {
+    hits_.push_back({pair.own, foreign_[pair.foreign].host});
+    hit(pair.own, foreign_[pair.foreign].host);
+  }
+  if (!pulls_chain()) complete_hit_clusters();
+  if (!pulls_chain()) return;
+  for (const Pair& pair : pairs_) judge_expected(pair);
+}
+
+/// Completes the clusters that an aura met, and those that may have to go home. Their bodies were judged as members of
+/// smaller clusters, held together by contacts and joints only.
+void InterestMatching::complete_hit_clusters() {
+  for (const Hit& hit : hits_) clusters_.complete(hit.own);
+  complete_near_boundaries();
+  clear_judged();
+  for (const Hit& each : hits_) hit(each.own, each.host);
+}
+
+/// Notes that an aura of `host` met the cluster of body `own`. The host keeps the foreign body, or our cluster goes to
+/// it.
+void InterestMatching::hit(std::uint32_t own, RegionId host) {
+  const std::uint32_t cluster = clusters_.of(own);
+  touched_[cluster] = 1;
+  judged_.push_back(cluster);
+  if (pulls_from(host, pulled_to_[cluster])) pulled_to_[cluster] = host;
+}
+
+bool InterestMatching::meets(const Foreign& foreign, const Path& own, int hops) const {
+  return foreign.ghost ? aura_.meets_ghost(foreign.path, own, hops) : aura_.meets(foreign.path, own, hops);
+}
+
+void InterestMatching::judge(const Pair& pair) {
+  const Foreign& f = foreign_[pair.foreign];
+  const Path& own = own_.path(pair.own);
+  const std::uint32_t cluster = clusters_.of(pair.own);
+  const int hops = clusters_.hops(pair.own);
+  const bool pulls = pulls_from(f.host, pulled_to_[cluster]);
+  if ((touched_[cluster] && !pulls) || !meets(f, own, hops)) return;
+  hits_.push_back({pair.own, f.host});
+  hit(pair.own, f.host);
+}
+
+void InterestMatching::judge_expected(const Pair& pair) {
+  const std::uint32_t cluster = clusters_.of(pair.own);
+  if (!outside(pair.own) || touched_[cluster] || expected_[cluster]) return;
+  const int hops = clusters_.hops(pair.own) + homeward_hops();
+  if (!meets(foreign_[pair.foreign], own_.path(pair.own), hops)) return;
+  expected_[cluster] = 1;
+  judged_.push_back(cluster);
+}
+
+}  // namespace aurasim::core
