@@ -15,9 +15,19 @@ constexpr double kUsualWay_m = 0.4;
 /// The first edge of blocks from which on their centres are at `x` or beyond.
 double edge_at(double x, double side_m) { return std::isfinite(x) ? std::ceil(x / side_m - 0.5) * side_m : x; }
 
+Rectangle grown(const Rectangle& area, double by_m) {
+  return {area.x0 - by_m, area.y0 - by_m, area.x1 + by_m, area.y1 + by_m};
+}
+
+bool overlap(const Rectangle& a, const Rectangle& b) {
+  return a.x0 <= b.x1 && b.x0 <= a.x1 && a.y0 <= b.y1 && b.y0 <= a.y1;
+}
+
 }  // namespace
 
-BlockOwners::BlockOwners(const RegionMap& map, double side_m, double reach_m) : map_(map), side_m_(side_m) {
+BlockOwners::BlockOwners(const RegionMap& map, double side_m, double reach_m, double way_m)
+    : map_(map), side_m_(side_m) {
+  const double farther_m = std::max(0.0, way_m - kUsualWay_m);
   for (std::uint32_t i = 0; i < map.size(); ++i) {
     const Rectangle& region = map.region(RegionId{i});
     const Rectangle blocks{edge_at(region.x0, side_m), edge_at(region.y0, side_m), edge_at(region.x1, side_m),
@@ -25,9 +35,12 @@ BlockOwners::BlockOwners(const RegionMap& map, double side_m, double reach_m) : 
     if (blocks.x0 >= blocks.x1 || blocks.y0 >= blocks.y1) {
       throw BadRegionMap("region " + std::to_string(i) + " has no block of " + std::to_string(side_m) + " m");
     }
-    territories_.push_back({blocks.x0 - reach_m, blocks.y0 - reach_m, blocks.x1 + reach_m, blocks.y1 + reach_m});
+    territories_.push_back(grown(blocks, reach_m));
+    surroundings_.push_back(grown(territories_.back(), farther_m));
   }
 }
+
+bool BlockOwners::are_near(RegionId a, RegionId b) const { return overlap(surroundings(a), surroundings(b)); }
 
 double usual_reach_m(const std::vector<double>& radii_m, double side_m) {
   double largest = 0;

@@ -10,18 +10,23 @@ namespace aurasim::core {
 class BlockOwners {
  public:
   /// A block belongs to the region that its centre lies in. `reach_m`: how far the territory of a region extends beyond
-  /// its blocks. Throws BadRegionMap if a region has no block.
-  BlockOwners(const RegionMap& map, double side_m, double reach_m);
+  /// its blocks. `way_m`: no body gets farther in a step, if it is not faster than promised. Throws BadRegionMap if a
+  /// region has no block.
+  BlockOwners(const RegionMap& map, double side_m, double reach_m, double way_m = 0);
 
   std::size_t size() const { return territories_.size(); }
   RegionId owner(const Block& block) const { return map_.owner(side_m_ * (block.x + 0.5), side_m_ * (block.y + 0.5)); }
   /// Where bodies of the region usually are. Bodies that extend beyond it are far.
   const Rectangle& territory(RegionId id) const { return territories_.at(value_of(id)); }
+  /// What no body of the region reaches beyond in the next step, unless its host says so beforehand (core/seam_partners.h).
+  const Rectangle& surroundings(RegionId id) const { return surroundings_.at(value_of(id)); }
+  /// Do the surroundings of two regions overlap?
+  bool are_near(RegionId a, RegionId b) const;
 
  private:
   RegionMap map_;
   double side_m_;
-  std::vector<Rectangle> territories_;
+  std::vector<Rectangle> territories_, surroundings_;
 };
 
 /// How far bodies of a scene with these bounding radii usually extend beyond their blocks, m. Larger and faster ones

@@ -26,8 +26,8 @@ void Listening::add(std::span<const Listened> regions) {
 }
 
 /// Both regions receive an introduction by the same state, because both listen to the node that made it.
-void Listening::receive() {
-  for (const Neighbour::Introduced& introduced : intake_.take_introductions()) {
+void Listening::receive(std::span<const Neighbour::Introduced> introductions) {
+  for (const Neighbour::Introduced& introduced : introductions) {
     const auto [a, b] = introduced.pair;
     if (a != vicinity_.self && b != vicinity_.self) continue;
     const RegionId other = a == vicinity_.self ? b : a;

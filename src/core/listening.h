@@ -18,8 +18,8 @@ class Listening {
 
   /// Adds regions that listen from the start. Call before the first state.
   void add(std::span<const Listened> regions);
-  /// Takes in the introductions of our region from batches that took effect since the last call.
-  void receive();
+  /// Takes in the introductions of our region, of those from batches that took effect since the last call.
+  void receive(std::span<const Neighbour::Introduced> introductions);
   /// Adds the regions whose time has come in state `now`. Returns true if there are any; the next batch then has to be
   /// full.
   bool begin(Step now);

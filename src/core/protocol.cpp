@@ -70,11 +70,18 @@ const Changes& Protocol::receive(Step n, Joining joining) {
   violations_.start_step();
   changes_.adoptions.clear();
   changes_.let_go.clear();
+  changes_.introductions = outbox_.aura.introductions;
   std::vector<Adoption> arrived = intake_.receive(n, violations_, joining);
   let_go_of_what_others_own();
   for (Adoption& adoption : arrived) take_if_newer(adoption);
   receive_violations();
-  if (settings_.sync != SyncMode::kFreeRunning) listening_.receive();  // in free-running mode regions agree on no state
+  if (settings_.sync != SyncMode::kFreeRunning) {  // in free-running mode regions agree on no state
+    const std::vector<Neighbour::Introduced> introduced = intake_.take_introductions();
+    listening_.receive(introduced);
+    for (const Neighbour::Introduced& one : introduced) {
+      if (one.stamp == n - 1) changes_.introductions.push_back(one.pair);
+    }
+  }
   changes_.orders = orders_.take_news();
   for (Order& order : changes_.orders) apply_late(order, n);
   return changes_;

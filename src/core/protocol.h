@@ -47,6 +47,8 @@ struct Changes {
   std::vector<Adoption> adoptions;  ///< in the order in which they join
   std::vector<BodyId> let_go;       ///< bodies of which another node has a higher epoch: take them out first
   std::vector<Order> orders;  ///< orders received since the last step, in sequence; execute them before anything else
+  /// Introductions of the newest batches that take effect, this node's own included.
+  std::vector<Introduction> introductions;
 };
 
 /// Clusters that have to leave for one region. The caller releases their bodies from physics and passes them to
@@ -104,6 +106,10 @@ class Protocol {
 
   /// Lets messages take effect. Returns what changes before state `n` is computed; valid until the next call.
   const Changes& receive(Step n, Joining joining = Joining::kInTime);
+
+  /// Introduces regions with the batch of the last observe(). For coupled regions, whose bodies are not the protocol's
+  /// concern.
+  void introduce(std::vector<Introduction> pairs) { outbox_.aura.introductions = std::move(pairs); }
 
   /// Looks at a state. Returns who has to leave; valid until the next call.
   const std::vector<Departure>& observe(const Snapshot& snapshot);

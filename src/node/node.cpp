@@ -87,6 +87,8 @@ bool Node::ready() {
   order_redo();
   if (redo_is_due()) return true;
   if (protocol_->may_gather()) gather();
+  // Coupled nodes cannot go on without all others. One that is far from a dead one would not notice.
+  if (owners_ && !protocol_->intake().dead_regions().empty()) return false;
   return protocol_->ready(current_step() + 1);
 }
 
@@ -142,6 +144,7 @@ void Node::compute_step() {
   {
     const Timed timed(report_.durations.protocol_s, setup_.clock);
     changes = &protocol_->receive(n);
+    if (partners_) partners_->begin(changes->introductions);
   }
   {
     const Timed timed(report_.durations.physics_s, setup_.clock);
@@ -256,6 +259,7 @@ void Node::finish_state() {
     core::Snapshot nothing;  // where regions are coupled, no body is the protocol's concern
     nothing.step = snapshot->step;
     departures = &protocol_->observe(owners_ ? nothing : *snapshot);
+    if (owners_) protocol_->introduce(world_.introductions_ahead());
   }
   {
     const Timed timed(report_.durations.watch_s, setup_.clock);

@@ -250,7 +250,9 @@ class Node {
   transport::Transport* transport_;
   std::unique_ptr<core::ClearanceQuery> clearance_;
   std::optional<core::Protocol> protocol_;   ///< never empty; replaced when the run goes back or the map changes
-  std::optional<core::BlockOwners> owners_;  ///< if regions are coupled
+  // If regions are coupled:
+  std::optional<core::BlockOwners> owners_;
+  std::optional<core::SeamPartners> partners_;  ///< of the state that is computed
   physics::RegionWorld world_;
   CollisionWatch watch_;
   core::Inbox inbox_;

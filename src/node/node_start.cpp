@@ -78,13 +78,9 @@ const StepReport& Node::take_map(const core::ProtocolSettings& settings, const c
 }
 
 void Node::couple() {
-  std::vector<double> radii_m;
-  for (const core::Prototype& kind : scene().prototypes) {
-    radii_m.push_back(core::bounding_radius(scene().shapes[kind.shape].shape));
-  }
-  const double side_m = setup_.physics.block_m;
-  owners_.emplace(*map_, side_m, core::usual_reach_m(radii_m, side_m));
-  world_.couple({region(), &*owners_, setup_.seams});
+  owners_.emplace(physics::block_owners(*map_, scene(), setup_.physics));
+  partners_.emplace(*owners_);
+  world_.couple({region(), &*owners_, setup_.seams, &*partners_});
 }
 
 /// Puts this region's part of a state into the world, with the clusters that had been sent here in that state or

@@ -5,6 +5,8 @@
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include "core/region_map.h"
+
 namespace aurasim::physics {
 
 struct Bounds {
@@ -30,6 +32,11 @@ inline Bounds bounds_of(const btCollisionShape& shape, const btTransform& pose) 
 }
 inline Bounds bounds_of(const btRigidBody& body) {
   return bounds_of(*body.getCollisionShape(), body.getWorldTransform());
+}
+/// Do the box and the area overlap in the x-y plane?
+inline bool overlap(const Bounds& bounds, const core::Rectangle& area) {
+  return bounds.low.x() <= area.x1 && bounds.high.x() >= area.x0 && bounds.low.y() <= area.y1 &&
+         bounds.high.y() >= area.y0;
 }
 /// The broadphase's box of an object, which contains bounds_of(body).
 inline Bounds bounds_of(const btBroadphaseProxy& proxy) { return {proxy.m_aabbMin, proxy.m_aabbMax}; }

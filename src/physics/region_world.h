@@ -12,6 +12,7 @@
 #include "core/changed_state.h"
 #include "core/control_log.h"
 #include "core/ids.h"
+#include "core/introduction.h"
 #include "core/order.h"
 #include "core/scene.h"
 #include "core/static_moves.h"
@@ -123,6 +124,9 @@ class RegionWorld {
   /// bodies. Throws std::invalid_argument for a solver other than the soft step. step() then also throws BadParcel
   /// (physics/parcel.h).
   void couple(const Coupling& coupling);
+  /// Where regions are coupled: the pairs of regions for core::SeamPartners that the next step needs because of bodies that
+  /// are hosted here. Ascending. Orders and setpoints of the next step change nothing about it.
+  std::vector<core::Introduction> introductions_ahead() const;
   /// Bodies that came in the last step, and bodies that left in it. Ascending by id. Those that came have their new
   /// epochs.
   const std::vector<Moved>& arrived() const;

@@ -69,6 +69,8 @@ class Simulation {
   std::uint64_t severed_contacts() const { return severed_contacts_; }
   /// See RegionWorld::couple().
   void couple(const Coupling& coupling);
+  /// See RegionWorld::introductions_ahead().
+  std::vector<core::Introduction> introductions_ahead() const;
   const std::vector<Moved>& arrived() const { return arrived_; }
   const std::vector<Moved>& left() const { return left_; }
   void watch_contacts(bool wanted) { world_.contact_impulses().want(wanted); }
@@ -98,6 +100,9 @@ class Simulation {
   // Coupled regions:
   void meet_neighbours();
   void meet_far();
+  bool may_be_in_chains(const HostedBody& body, double way_m) const;
+  void find_reached(const HostedBody& body, double way_m, std::vector<core::RegionId>& reached) const;
+  void check_partners(const Bounds& reach) const;
   void post(core::RegionId to, const Halo& halo);
   Halo fetch(core::RegionId from);
   Bounds reach_of(const btRigidBody& body) const;

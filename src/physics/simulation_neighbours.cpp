@@ -22,14 +22,6 @@
 namespace aurasim::physics {
 namespace {
 
-/// Added to the bounds of bodies, m. Covers the damping of speeds in the step, and rounding.
-constexpr double kSlack_m = 0.05;
-
-bool overlap(const Bounds& bounds, const core::Rectangle& area) {
-  return bounds.low.x() <= area.x1 && bounds.high.x() >= area.x0 && bounds.low.y() <= area.y1 &&
-         bounds.high.y() >= area.y0;
-}
-
 bool is_within(const Bounds& bounds, const core::Rectangle& area) {
   return bounds.low.x() >= area.x0 && bounds.high.x() <= area.x1 && bounds.low.y() >= area.y0 &&
          bounds.high.y() <= area.y1;
@@ -46,7 +38,7 @@ void Simulation::couple(const Coupling& coupling) {
 
 /// Bounds of what a body may touch in the next step.
 Bounds Simulation::reach_of(const btRigidBody& body) const {
-  Bounds bounds = bounds_of(body).grown(scalar(kSlack_m));
+  Bounds bounds = bounds_of(body).grown(scalar(kReachSlack_m));
   if (!body.isActive()) return bounds;
   const btScalar step_s = scalar(settings_.step_s);
   const btVector3 pull = to_bullet(scene_->gravity) + body.getInvMass() * body.getTotalForce();
@@ -83,6 +75,7 @@ void Simulation::meet_neighbours() {
     if (!body.born || is_guest(*body.rigid)) continue;
     const core::RegionId host = host_of(body);
     if (host != coupling_->self) {
+      expect_to_meet(*coupling_, host);
       leaving[host].push_back(body.id);
       guests.push_back(visit_of(body));
       left_.push_back({guests.back().body, host});
@@ -92,6 +85,7 @@ void Simulation::meet_neighbours() {
     for (auto& [peer, halo] : halos) {
       if (peer != host && overlap(reach, coupling_->owners->territory(peer))) halo.guests.push_back(visit_of(body));
     }
+    check_partners(reach);
   }
   std::vector<std::span<const core::BodyId>> clusters;
   for (const auto& [host, ids] : leaving) clusters.emplace_back(ids);
@@ -121,6 +115,16 @@ void Simulation::meet_neighbours() {
   restore_late_contacts();
   send_guests_home();
   note_all();
+}
+
+/// What a body may touch is of regions with which this one exchanges parcels in this step.
+void Simulation::check_partners(const Bounds& reach) const {
+  const core::BlockOwners& owners = *coupling_->owners;
+  if (is_within(reach, owners.surroundings(coupling_->self))) return;
+  for (std::uint32_t i = 0; i < owners.size(); ++i) {
+    const core::RegionId region{i};
+    if (region != coupling_->self && overlap(reach, owners.territory(region))) expect_to_meet(*coupling_, region);
+  }
 }
 
 void Simulation::restore_later(const core::ClusterState& cluster, std::span<const std::uint32_t> records) {

@@ -19,6 +19,7 @@ Settings soft(double side_m = kSmallBlock_m) {
   settings.solver = Solver::kSoftStep;
   settings.continuous = true;
   settings.block_m = side_m;
+  settings.top_speed_m_s = 8;  // some bodies are faster
   return settings;
 }
 

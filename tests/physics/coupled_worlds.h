@@ -18,13 +18,13 @@ class CoupledWorlds {
  public:
   CoupledWorlds(const core::Scene& scene, const Settings& settings, const core::RegionMap& map,
                 std::span<const core::BodyRecord> bodies)
-      : owners_(map, settings.block_m, core::usual_reach_m(radii(scene), settings.block_m)), seams_(map.size()) {
+      : owners_(block_owners(map, scene, settings)), partners_(owners_), seams_(map.size()) {
     RegionWorld whole(scene, settings);
     whole.add(bodies);  // gives bodies their blocks
     for (std::uint32_t i = 0; i < map.size(); ++i) {
       const core::RegionId self{i};
       worlds_.push_back(std::make_unique<RegionWorld>(scene, settings));
-      worlds_.back()->couple({self, &owners_, &seams_.of(self)});
+      worlds_.back()->couple({self, &owners_, &seams_.of(self), &partners_});
       std::vector<core::BodyRecord> here;
       for (const core::BodyRecord& body : whole.peek_all().bodies) {
         if (owners_.owner(body.block) == self) here.push_back(body);
@@ -35,6 +35,13 @@ class CoupledWorlds {
 
   /// All worlds compute the next state. Throws what the first of them throws.
   void step() {
+    std::vector<core::Introduction> pairs;
+    for (const auto& world : worlds_) {
+      const std::vector<core::Introduction> some = world->introductions_ahead();
+      if (!are_silent_) pairs.insert(pairs.end(), some.begin(), some.end());
+    }
+    introductions_ = pairs.size();
+    partners_.begin(pairs);
     std::vector<std::function<void()>> works;
     for (const auto& world : worlds_) works.push_back([&world] { world->step(); });
     seams_.run(works);
@@ -54,22 +61,24 @@ class CoupledWorlds {
   core::SeamMail& mail(std::uint32_t region) { return seams_.of(core::RegionId{region}); }
   /// From now on, a region has another mail.
   void use(std::uint32_t region, core::SeamMail& mail) {
-    worlds_[region]->couple({core::RegionId{region}, &owners_, &mail});
+    worlds_[region]->couple({core::RegionId{region}, &owners_, &mail, &partners_});
   }
   RegionWorld& operator[](std::size_t region) { return *worlds_[region]; }
   std::size_t size() const { return worlds_.size(); }
   std::size_t parcels() const { return seams_.count(); }
+  /// From now on, nobody says who has to exchange parcels besides regions near each other.
+  void silence() { are_silent_ = true; }
+  /// Number of pairs of regions that were named for the last state.
+  std::size_t introductions() const { return introductions_; }
+  /// Have two regions exchanged parcels in the last state?
+  bool have_met(std::uint32_t a, std::uint32_t b) const { return partners_.are_partners(core::RegionId{a}, core::RegionId{b}); }
 
  private:
-  static std::vector<double> radii(const core::Scene& scene) {
-    std::vector<double> all;
-    for (const core::Prototype& kind : scene.prototypes)
-      all.push_back(core::bounding_radius(scene.shapes[kind.shape].shape));
-    return all;
-  }
-
   core::BlockOwners owners_;
+  core::SeamPartners partners_;
   transport::MemorySeams seams_;
+  bool are_silent_ = false;
+  std::size_t introductions_ = 0;
   std::vector<std::unique_ptr<RegionWorld>> worlds_;
 };
 

@@ -35,7 +35,9 @@ std::vector<core::RegionId> SoftShared::audience(const btRigidBody& body, SoftPh
   for (const core::Block& block : {core::Block{corner.x - 1, corner.y - 1}, core::Block{corner.x, corner.y - 1},
                                    core::Block{corner.x - 1, corner.y}, corner}) {
     const core::RegionId region = coupling_.owners->owner(block);
-    if (region != coupling_.self && std::ranges::find(regions, region) == regions.end()) regions.push_back(region);
+    if (region == coupling_.self || std::ranges::find(regions, region) != regions.end()) continue;
+    expect_to_meet(coupling_, region);
+    regions.push_back(region);
   }
   return regions;
 }
@@ -122,7 +124,9 @@ bool SoftShared::meet(std::span<btRigidBody* const> bodies, SoftContacts& contac
       touched.phases |= bit_of(phase);
       if (phase == SoftPhase::kEdges)
         touched.across = is_guest(*ends[1 - i]) ? place_of(*ends[1 - i]).host : coupling_.self;
-      if (is_guest(*ends[i])) told[place_of(*ends[i]).host].bodies.push_back(ends[1 - i]);
+      if (!is_guest(*ends[i])) continue;
+      expect_to_meet(coupling_, place_of(*ends[i]).host);
+      told[place_of(*ends[i]).host].bodies.push_back(ends[1 - i]);
     }
     if (phase == SoftPhase::kEdges) continue;
     const bool we_tell = !is_guest(*ends[touch.a < touch.b ? 0 : 1]);  // both hosts have found it
@@ -321,6 +325,7 @@ void SoftShared::settle(SoftPhase phase) {
   for (const Chain& chain : chains) {
     if (!chain.is_ours) continue;
     for (const core::RegionId host : chain.hosts) {
+      expect_to_meet(coupling_, host);
       Common& common = all_common[host];
       common.patches.insert(common.patches.end(), chain.patches.begin(), chain.patches.end());
       for (const std::int32_t mover : chain.movers) {

@@ -1,0 +1,34 @@
+// Which coupled regions exchange parcels in a step (docs/design.md, "Coupled regions"). Regions near each other always
+// do. Where a body may get to regions beyond, or may form chains of contacts over several, its host says so in the batch
+// of the state before. All nodes have all batches, so all know the same.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/block_owners.h"
+#include "core/introduction.h"
+
+namespace aurasim::core {
+
+class SeamPartners {
+ public:
+  explicit SeamPartners(const BlockOwners& owners);
+
+  /// Begins a step. `pairs`: what all hosts have said in the state before. Regions that pairs connect, also by way of
+  /// others, exchange parcels, each with each.
+  void begin(std::span<const Introduction> pairs);
+
+  /// Do two regions exchange parcels in this step?
+  bool are_partners(RegionId a, RegionId b) const;
+
+ private:
+  std::uint32_t group(RegionId region) const;
+
+  std::size_t count_;
+  std::vector<bool> are_near_;          ///< by a * count_ + b
+  std::vector<std::uint32_t> parents_;  ///< by region: another one of its group; itself for the first
+};
+
+}  // namespace aurasim::core

@@ -1,0 +1,85 @@
+// Coupled regions (core/seam_partners.h): which regions have to exchange parcels in the next step though they are not near
+// each other.
+//
+// Two kinds of bodies make it necessary. Bodies that may reach beyond the surroundings of their region may touch what
+// regions far away host. And contacts in the phase of giants may form chains over many regions, whose hosts all have to
+// know the whole chain. The host of such a body names all regions whose surroundings the body may reach. So the hosts of
+// two bodies that touch, one of which is such a body, are connected by these pairs: directly, or by way of the owner of
+// the place where they touch. The hosts of a chain are then one group.
+#include <algorithm>
+
+#include "core/keep_one_of_each.h"
+#include "physics/bounds.h"
+#include "physics/bullet_convert.h"
+#include "physics/moving_body.h"
+#include "physics/simulation.h"
+#include "physics/soft/seams.h"
+
+namespace aurasim::physics {
+namespace {
+
+/// Half of a square around a body.
+struct Square {
+  double x, y, half_m;
+
+  bool is_within(const core::Rectangle& area) const {
+    return x - half_m >= area.x0 && x + half_m <= area.x1 && y - half_m >= area.y0 && y + half_m <= area.y1;
+  }
+};
+
+}  // namespace
+
+/// May a body have a contact of the phase of giants in the next step? Two bodies that are no giants have one only if
+/// what they reach is large for a block: docs/design.md, "Blocks", with the reach of each instead of radius and gap.
+bool Simulation::may_be_in_chains(const HostedBody& body, double way_m) const {
+  const BodyPlace& place = place_of(*body.rigid);
+  const core::Vec3 p_WB = from_bullet(body.rigid->getWorldTransform().getOrigin());
+  if (soft_place(p_WB, place.block, place.radius_m, settings_.block_m).is_giant) return true;
+  const double outside_m = core::outside_m(p_WB, place.block, settings_.block_m);
+  return outside_m + 2 * (place.radius_m + way_m) >= settings_.block_m / 4;
+}
+
+/// Appends the regions whose surroundings the body may reach in the next step, and the one that is to host it.
+void Simulation::find_reached(const HostedBody& body, double way_m, std::vector<core::RegionId>& reached) const {
+  const core::BlockOwners& owners = *coupling_->owners;
+  const Bounds reach = bounds_of(*body.rigid).grown(scalar(2 * way_m));
+  const core::RegionId host = host_of(body);
+  for (std::uint32_t i = 0; i < owners.size(); ++i) {
+    const core::RegionId region{i};
+    if (region == host || overlap(reach, owners.surroundings(region))) reached.push_back(region);
+  }
+}
+
+std::vector<core::Introduction> Simulation::introductions_ahead() const {
+  std::vector<core::Introduction> pairs;
+  if (coupling_ == nullptr) return pairs;
+  const core::RegionId self = coupling_->self;
+  const core::BlockOwners& owners = *coupling_->owners;
+  const auto introduce = [&](core::RegionId other) {
+    if (other != self) pairs.push_back({std::min(self, other), std::max(self, other)});
+  };
+  if (!broken_.empty()) {  // whoever had one of them as a guest has to know
+    for (std::uint32_t i = 0; i < owners.size(); ++i) introduce(core::RegionId{i});
+  }
+  std::vector<core::RegionId> reached;
+  for (const HostedBody& body : table_.bodies()) {
+    if (!body.born || is_guest(*body.rigid)) continue;
+    const btVector3& p_WB = body.rigid->getWorldTransform().getOrigin();
+    const double way_m =
+        way_ahead_m(*scene_, settings_, static_cast<double>(body.rigid->getLinearVelocity().length()));
+    const Square around{static_cast<double>(p_WB.x()), static_cast<double>(p_WB.y()),
+                        place_of(*body.rigid).radius_m + 2 * way_m};
+    const core::RegionId host = host_of(body);
+    const bool is_usual = around.is_within(owners.surroundings(host)) && !may_be_in_chains(body, way_m);
+    if (host == self && is_usual) continue;
+    reached.clear();
+    find_reached(body, way_m, reached);
+    const auto is_near = [&](core::RegionId region) { return owners.are_near(self, region); };
+    if (is_usual && std::ranges::all_of(reached, is_near)) continue;
+    std::ranges::for_each(reached, introduce);
+  }
+  core::keep_one_of_each(pairs);
+  return pairs;
+}
+
+}  // namespace aurasim::physics
