@@ -19,6 +19,8 @@ using namespace std::chrono_literals;
 
 /// After so long a wait for one parcel, the log names the region.
 constexpr auto kLong = 2s;
+/// After so long a wait it is asked whether the node of any region is lost.
+constexpr auto kAsksForAll = 5ms;
 
 double seconds_since(std::chrono::steady_clock::time_point begun) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
@@ -57,6 +59,7 @@ struct DdsSeams::Impl {
   }
 
   bool take(core::RegionId from, Peer& peer);
+  std::optional<core::RegionId> find_lost() const;
   void note_posted(std::chrono::steady_clock::time_point begun);
   void note_fetched(Peer& peer, std::chrono::steady_clock::time_point begun);
   void end_exchange();
@@ -102,6 +105,14 @@ bool DdsSeams::Impl::take(core::RegionId from, Peer& peer) {
     return true;
   }
   return false;
+}
+
+/// A region whose node is lost. Without it nobody ends the step, and those who wait for it send nothing.
+std::optional<core::RegionId> DdsSeams::Impl::find_lost() const {
+  for (const auto& [region, peer] : peers) {
+    if (settings.is_lost(region)) return region;
+  }
+  return std::nullopt;
 }
 
 void DdsSeams::Impl::note_posted(std::chrono::steady_clock::time_point begun) {
@@ -180,9 +191,10 @@ std::span<const std::byte> DdsSeams::fetch(core::RegionId from) {
       impl_->note_fetched(peer, begun);
       return peer.last.octets;
     }
-    if (impl_->settings.is_lost(from)) {
-      throw core::SeamsBroken(fmt::format("region {} was lost in the middle of a step", core::value_of(from)));
-    }
+    std::optional<core::RegionId> lost;
+    if (impl_->settings.is_lost(from)) lost = from;
+    if (!lost && std::chrono::steady_clock::now() - begun > kAsksForAll) lost = impl_->find_lost();
+    if (lost) throw core::SeamsBroken(fmt::format("region {} was lost in the middle of a step", core::value_of(*lost)));
     core::Progress::mark();
     impl_->participant.progress();
     impl_->wakeup.wait(5ms);

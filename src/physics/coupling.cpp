@@ -12,6 +12,15 @@ void expect_to_meet(const Coupling& coupling, core::RegionId other) {
                          std::to_string(core::value_of(other)) + ", and has not said so in the state before");
 }
 
+void expect_all_to_meet(const Coupling& coupling, std::span<const core::RegionId> others) {
+  Coupling as_seen = coupling;
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    expect_to_meet(coupling, others[i]);
+    as_seen.self = others[i];
+    for (const core::RegionId other : others.subspan(i + 1)) expect_to_meet(as_seen, other);
+  }
+}
+
 core::BlockOwners block_owners(const core::RegionMap& map, const core::Scene& scene, const Settings& settings) {
   std::vector<double> radii_m;
   for (const core::Prototype& kind : scene.prototypes) {

@@ -2,6 +2,8 @@
 // borders are known to both sides, and contacts between bodies of several regions are solved by each of them.
 #pragma once
 
+#include <span>
+
 #include "core/block_owners.h"
 #include "core/seam_partners.h"
 #include "core/scene.h"
@@ -34,6 +36,8 @@ void for_each_peer(const Coupling& coupling, Work&& work) {
 
 /// Throws std::logic_error unless the two regions exchange parcels in this step. For what has to be sent.
 void expect_to_meet(const Coupling& coupling, core::RegionId other);
+/// The same for these regions, each with each and with this one.
+void expect_all_to_meet(const Coupling& coupling, std::span<const core::RegionId> others);
 
 /// Who owns which block, and how far bodies usually get.
 core::BlockOwners block_owners(const core::RegionMap& map, const core::Scene& scene, const Settings& settings);

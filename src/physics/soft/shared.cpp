@@ -324,8 +324,8 @@ void SoftShared::settle(SoftPhase phase) {
   auto& all_common = common_[static_cast<std::size_t>(phase)];
   for (const Chain& chain : chains) {
     if (!chain.is_ours) continue;
+    expect_all_to_meet(coupling_, chain.hosts);  // else one of them does not know the whole chain
     for (const core::RegionId host : chain.hosts) {
-      expect_to_meet(coupling_, host);
       Common& common = all_common[host];
       common.patches.insert(common.patches.end(), chain.patches.begin(), chain.patches.end());
       for (const std::int32_t mover : chain.movers) {
