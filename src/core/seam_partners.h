@@ -1,6 +1,6 @@
 // Which coupled regions exchange parcels in a step (docs/design.md, "Coupled regions"). Regions near each other always
-// do. Where a body may get to regions beyond, or may form chains of contacts over several, its host says so in the batch
-// of the state before. All nodes have all batches, so all know the same.
+// do. Where a body may get to regions beyond, or may form chains of contacts over several, its host says so in the
+// batch of the state before. All nodes have all batches, so all know the same.
 #pragma once
 
 #include <cstdint>

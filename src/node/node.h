@@ -249,7 +249,7 @@ class Node {
   const core::RegionMap* map_;
   transport::Transport* transport_;
   std::unique_ptr<core::ClearanceQuery> clearance_;
-  std::optional<core::Protocol> protocol_;   ///< never empty; replaced when the run goes back or the map changes
+  std::optional<core::Protocol> protocol_;  ///< never empty; replaced when the run goes back or the map changes
   // If regions are coupled:
   std::optional<core::BlockOwners> owners_;
   std::optional<core::SeamPartners> partners_;  ///< of the state that is computed

@@ -5,9 +5,9 @@
 #include <span>
 
 #include "core/block_owners.h"
-#include "core/seam_partners.h"
 #include "core/scene.h"
 #include "core/seam_mail.h"
+#include "core/seam_partners.h"
 #include "physics/settings.h"
 
 namespace aurasim::physics {

@@ -124,8 +124,8 @@ class RegionWorld {
   /// bodies. Throws std::invalid_argument for a solver other than the soft step. step() then also throws BadParcel
   /// (physics/parcel.h).
   void couple(const Coupling& coupling);
-  /// Where regions are coupled: the pairs of regions for core::SeamPartners that the next step needs because of bodies that
-  /// are hosted here. Ascending. Orders and setpoints of the next step change nothing about it.
+  /// Where regions are coupled: the pairs of regions for core::SeamPartners that the next step needs because of bodies
+  /// that are hosted here. Ascending. Orders and setpoints of the next step change nothing about it.
   std::vector<core::Introduction> introductions_ahead() const;
   /// Bodies that came in the last step, and bodies that left in it. Ascending by id. Those that came have their new
   /// epochs.

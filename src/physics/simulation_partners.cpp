@@ -1,11 +1,11 @@
-// Coupled regions (core/seam_partners.h): which regions have to exchange parcels in the next step though they are not near
-// each other.
+// Coupled regions (core/seam_partners.h): which regions have to exchange parcels in the next step though they are not
+// near each other.
 //
 // Two kinds of bodies make it necessary. Bodies that may reach beyond the surroundings of their region may touch what
 // regions far away host. And contacts in the phase of giants may form chains over many regions, whose hosts all have to
-// know the whole chain. The host of such a body names all regions whose surroundings the body may reach. So the hosts of
-// two bodies that touch, one of which is such a body, are connected by these pairs: directly, or by way of the owner of
-// the place where they touch. The hosts of a chain are then one group.
+// know the whole chain. The host of such a body names all regions whose surroundings the body may reach. So the hosts
+// of two bodies that touch, one of which is such a body, are connected by these pairs: directly, or by way of the owner
+// of the place where they touch. The hosts of a chain are then one group.
 #include <algorithm>
 
 #include "core/keep_one_of_each.h"
@@ -65,8 +65,7 @@ std::vector<core::Introduction> Simulation::introductions_ahead() const {
   for (const HostedBody& body : table_.bodies()) {
     if (!body.born || is_guest(*body.rigid)) continue;
     const btVector3& p_WB = body.rigid->getWorldTransform().getOrigin();
-    const double way_m =
-        way_ahead_m(*scene_, settings_, static_cast<double>(body.rigid->getLinearVelocity().length()));
+    const double way_m = way_ahead_m(*scene_, settings_, static_cast<double>(body.rigid->getLinearVelocity().length()));
     const Square around{static_cast<double>(p_WB.x()), static_cast<double>(p_WB.y()),
                         place_of(*body.rigid).radius_m + 2 * way_m};
     const core::RegionId host = host_of(body);

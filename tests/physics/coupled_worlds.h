@@ -71,7 +71,9 @@ class CoupledWorlds {
   /// Number of pairs of regions that were named for the last state.
   std::size_t introductions() const { return introductions_; }
   /// Have two regions exchanged parcels in the last state?
-  bool have_met(std::uint32_t a, std::uint32_t b) const { return partners_.are_partners(core::RegionId{a}, core::RegionId{b}); }
+  bool have_met(std::uint32_t a, std::uint32_t b) const {
+    return partners_.are_partners(core::RegionId{a}, core::RegionId{b});
+  }
 
  private:
   core::BlockOwners owners_;
