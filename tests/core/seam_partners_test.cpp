@@ -5,13 +5,13 @@
 namespace aurasim::core {
 namespace {
 
-constexpr RegionId kWest{0}, kMiddle{1}, kEast{2}, kFarEast{3};
+constexpr RegionId kColumn0{0}, kColumn1{1}, kColumn2{2}, kColumn3{3};
 
 TEST(SeamPartners, AreNearEachOther) {
   const BlockOwners owners(RegionMap::columns(4, 16), 16, 1);
   const SeamPartners partners(owners);
-  EXPECT_TRUE(partners.are_partners(kWest, kMiddle));
-  EXPECT_FALSE(partners.are_partners(kWest, kEast));
+  EXPECT_TRUE(partners.are_partners(kColumn0, kColumn1));
+  EXPECT_FALSE(partners.are_partners(kColumn0, kColumn2));
 }
 
 TEST(SeamPartners, OfAGridAreDiagonalNeighboursToo) {
@@ -24,20 +24,20 @@ TEST(SeamPartners, OfAGridAreDiagonalNeighboursToo) {
 /// Columns of 16 m, so those to both sides of one are 16 m apart.
 TEST(SeamPartners, AreMoreWhereBodiesMayBeFast) {
   const double reach_m = 1;
-  EXPECT_FALSE(BlockOwners(RegionMap::columns(4, 16), 16, reach_m, 6).are_near(kWest, kEast));
-  EXPECT_TRUE(BlockOwners(RegionMap::columns(4, 16), 16, reach_m, 8).are_near(kWest, kEast));
+  EXPECT_FALSE(BlockOwners(RegionMap::columns(4, 16), 16, reach_m, 6).are_near(kColumn0, kColumn2));
+  EXPECT_TRUE(BlockOwners(RegionMap::columns(4, 16), 16, reach_m, 8).are_near(kColumn0, kColumn2));
 }
 
 TEST(SeamPartners, AreAllThatPairsConnectForOneStep) {
   const BlockOwners owners(RegionMap::columns(5, 16), 16, 1);
   SeamPartners partners(owners);
-  const std::vector<Introduction> pairs = {{kWest, kEast}, {kEast, RegionId{4}}};
+  const std::vector<Introduction> pairs = {{kColumn0, kColumn2}, {kColumn2, RegionId{4}}};
   partners.begin(pairs);
-  EXPECT_TRUE(partners.are_partners(kWest, RegionId{4}));
-  EXPECT_TRUE(partners.are_partners(RegionId{4}, kWest));
-  EXPECT_FALSE(partners.are_partners(kWest, kFarEast));
+  EXPECT_TRUE(partners.are_partners(kColumn0, RegionId{4}));
+  EXPECT_TRUE(partners.are_partners(RegionId{4}, kColumn0));
+  EXPECT_FALSE(partners.are_partners(kColumn0, kColumn3));
   partners.begin({});
-  EXPECT_FALSE(partners.are_partners(kWest, kEast));
+  EXPECT_FALSE(partners.are_partners(kColumn0, kColumn2));
 }
 
 }  // namespace
