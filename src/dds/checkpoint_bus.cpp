@@ -27,10 +27,7 @@ struct Given {
 
 struct CheckpointBus::Impl {
   Impl(Participant& participant_in, core::RegionId region_in)
-      : participant(participant_in),
-        region(region_in),
-        wakeup(participant.domain().wakeup()),
-        to_all(participant.domain(), EndpointSpec{TopicId::kCheckpoint, {topics::kWorldPartition}, {}, {}}, wakeup) {
+      : participant(participant_in), region(region_in), wakeup(participant.domain().wakeup()) {
     read();
   }
 
@@ -46,7 +43,8 @@ struct CheckpointBus::Impl {
   Participant& participant;
   core::RegionId region;
   Wakeup& wakeup;
-  TypedWriter<wire::Checkpoint> to_all;
+  /// Made when there is something to send: it is matched with all nodes, and recoveries are rare.
+  std::optional<TypedWriter<wire::Checkpoint>> to_all;
   core::Generation life = 0;
   core::Generation generation_to_all = 0;  ///< of the last part sent to all
   std::vector<core::RegionId> keepers;
@@ -86,11 +84,15 @@ std::size_t CheckpointBus::send_to_keepers(const messages::Checkpoint& checkpoin
 
 bool CheckpointBus::send_to_all(const messages::Checkpoint& checkpoint) {
   impl_->participant.progress();
+  if (!impl_->to_all) {
+    impl_->to_all.emplace(impl_->participant.domain(),
+                          EndpointSpec{TopicId::kCheckpoint, {topics::kWorldPartition}, {}, {}}, impl_->wakeup);
+  }
   // Parts for an earlier generation are of no use any more.
   if (std::exchange(impl_->generation_to_all, checkpoint.generation) != checkpoint.generation) {
-    impl_->to_all.forget_all();
+    impl_->to_all->forget_all();
   }
-  return impl_->to_all.send(checkpoint) != WriteResult::kFailed;
+  return impl_->to_all->send(checkpoint) != WriteResult::kFailed;
 }
 
 std::vector<messages::Checkpoint> CheckpointBus::take() {

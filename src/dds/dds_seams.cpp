@@ -1,6 +1,7 @@
 #include "dds/dds_seams.h"
 
 #include <chrono>
+#include <deque>
 #include <map>
 #include <optional>
 #include <utility>
@@ -28,19 +29,15 @@ double seconds_since(std::chrono::steady_clock::time_point begun) {
 
 struct Peer {
   Peer(Domain& domain, const SeamSettings& settings, core::RegionId peer, Wakeup& wakeup)
-      : reader(domain,
-               on(TopicId::kSeam, {.source = peer, .destination = settings.region, .life = settings.life},
-                  settings.region),
-               wakeup),
-        writer(domain,
+      : writer(domain,
                on(TopicId::kSeam, {.source = settings.region, .destination = peer, .life = settings.life},
                   settings.region),
                wakeup) {}
 
-  Reader reader;
   Writer writer;
-  std::uint32_t posted = 0, fetched = 0;  ///< in this step
-  double waited_s = 0;                    ///< in this step
+  std::deque<messages::SeamParcel> waiting;  ///< parcels that came while those of another region were fetched
+  std::uint32_t posted = 0, fetched = 0;     ///< in this step
+  double waited_s = 0;                       ///< in this step
   messages::SeamParcel last;
 };
 
@@ -48,7 +45,11 @@ struct Peer {
 
 struct DdsSeams::Impl {
   Impl(Participant& participant_in, const SeamSettings& settings_in)
-      : participant(participant_in), settings(settings_in), wakeup(participant.domain().wakeup()) {
+      : participant(participant_in),
+        settings(settings_in),
+        wakeup(participant.domain().wakeup()),
+        reader(participant.domain(),
+               on(TopicId::kSeam, {.destination = settings.region, .life = settings.life}, settings.region), wakeup) {
     for (std::uint32_t i = 0; i < settings.region_count; ++i) {
       if (core::RegionId{i} == settings.region) continue;
       peers.try_emplace(core::RegionId{i}, participant.domain(), settings, core::RegionId{i}, wakeup);
@@ -60,6 +61,7 @@ struct DdsSeams::Impl {
 
   bool take(core::RegionId from, Peer& peer);
   std::optional<core::RegionId> find_lost() const;
+  bool receive();
   void note_posted(std::chrono::steady_clock::time_point begun);
   void note_fetched(Peer& peer, std::chrono::steady_clock::time_point begun);
   void end_exchange();
@@ -67,6 +69,7 @@ struct DdsSeams::Impl {
   Participant& participant;
   SeamSettings settings;
   Wakeup& wakeup;
+  Reader reader;  ///< of the parcels of all peers
   std::map<core::RegionId, Peer> peers;
   messages::Expected expected;
   core::Generation generation = 0;
@@ -79,19 +82,12 @@ struct DdsSeams::Impl {
 
 /// Takes the next parcel of this step. Parcels of earlier steps are dropped.
 bool DdsSeams::Impl::take(core::RegionId from, Peer& peer) {
-  expected.source = from;
-  Origin origin;
-  while (peer.reader.take(&sample, &origin)) {
-    if (!settings.is_node(from, origin.writer.guidPrefix)) {
-      peer.reader.refuse_from(origin, fmt::format("it is not the node of region {}", core::value_of(from)));
-      continue;
+  for (;;) {
+    while (peer.waiting.empty()) {
+      if (!receive()) return false;
     }
-    auto decoded = messages::decode(sample, expected);
-    if (const auto* error = std::get_if<messages::WireError>(&decoded)) {
-      peer.reader.refuse_from(origin, *error);
-      continue;
-    }
-    auto& parcel = std::get<messages::SeamParcel>(decoded);
+    messages::SeamParcel parcel = std::move(peer.waiting.front());
+    peer.waiting.pop_front();
     if (parcel.header.generation < generation || parcel.header.step < step) continue;
     const bool is_next = parcel.header.generation == generation && parcel.header.step == step &&
                          parcel.header.number == peer.fetched + 1;
@@ -104,7 +100,27 @@ bool DdsSeams::Impl::take(core::RegionId from, Peer& peer) {
     peer.last = std::move(parcel);
     return true;
   }
-  return false;
+}
+
+/// Takes one sample, and puts its parcel to those of its region. False when there is none.
+bool DdsSeams::Impl::receive() {
+  Origin origin;
+  if (!reader.take(&sample, &origin)) return false;
+  const core::RegionId from =
+      participant.domain().speakers().home_of(origin.writer).value_or(core::RegionId{sample.source()});
+  const auto peer = peers.find(from);
+  if (peer == peers.end() || !settings.is_node(from, origin.writer.guidPrefix)) {
+    reader.refuse_from(origin, fmt::format("it is not the node of region {}", core::value_of(from)));
+    return true;
+  }
+  expected.source = from;
+  auto decoded = messages::decode(sample, expected);
+  if (const auto* error = std::get_if<messages::WireError>(&decoded)) {
+    reader.refuse_from(origin, *error);
+  } else {
+    peer->second.waiting.push_back(std::move(std::get<messages::SeamParcel>(decoded)));
+  }
+  return true;
 }
 
 /// A region whose node is lost. Without it nobody ends the step, and those who wait for it send nothing.
@@ -152,7 +168,7 @@ std::vector<std::string> DdsSeams::unmatched(core::RegionId region) const {
   std::vector<std::string> missing;
   const auto peer = impl_->peers.find(region);
   if (peer == impl_->peers.end()) return missing;
-  if (!peer->second.reader.watch().any_matched(std::nullopt)) missing.emplace_back("its seam writer");
+  if (!impl_->reader.watch().any_matched({}, region)) missing.emplace_back("its seam writer");
   if (!peer->second.writer.reaches(region)) missing.emplace_back("its seam reader");
   return missing;
 }

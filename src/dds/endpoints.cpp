@@ -116,12 +116,14 @@ Writer::Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
   if (spec.region) {
     domain.directory().add(writer_->guid(), *spec.region);
   }
+  domain.speakers().add(writer_->guid(), spec.partitions);  // own readers may hear it
   if (qos.liveliness().kind == eprosima::fastdds::dds::MANUAL_BY_TOPIC_LIVELINESS_QOS) {
     domain.liveliness().add(writer_, std::chrono::nanoseconds(qos.liveliness().lease_duration.to_ns()));
   }
 }
 
 Writer::~Writer() {
+  domain_.speakers().remove(writer_->guid());
   if (is_of_nodes_) domain_.guard().remove_writer_of_nodes(entity_of(writer_->guid()));
   domain_.liveliness().remove(writer_);
   // With samples in its history a writer can lock up as it is deleted: a heartbeat that is being sent just then looks
@@ -223,7 +225,7 @@ Reader::Reader(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
     : domain_(domain),
       type_(domain.participant().find_type(domain.topic(spec.topic).get_type_name())),
       part_fields_(part_fields_of(type_)),
-      watch_(wakeup) {
+      watch_(wakeup, [&speakers = domain.speakers()](const Guid& writer) { return speakers.home_of(writer); }) {
   auto& topic = domain.topic(spec.topic);
   const auto stopped = domain.guard().delivery().stop();
   SubscriberQos subscriber_qos;

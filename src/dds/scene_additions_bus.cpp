@@ -1,6 +1,7 @@
 #include "dds/scene_additions_bus.h"
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -9,12 +10,18 @@
 
 namespace aurasim::dds {
 struct SceneAdditionsWriter::Impl {
-  Impl(Participant& participant, core::RegionId region_in)
-      : region(region_in), writer(participant.domain(), on(TopicId::kOrders), wakeup) {}
+  Impl(Participant& participant_in, core::RegionId region_in) : participant(participant_in), region(region_in) {
+    if (core::value_of(region) == 0) make_writer();  // other tools find the topic by it
+  }
 
+  void make_writer() {
+    if (!writer) writer.emplace(participant.domain(), on(TopicId::kOrders), wakeup);
+  }
+
+  Participant& participant;
   core::RegionId region;
   Wakeup wakeup;
-  TypedWriter<wire::AuraBatch> writer;
+  std::optional<TypedWriter<wire::AuraBatch>> writer;  ///< the node that becomes the lead makes one
 };
 
 SceneAdditionsWriter::SceneAdditionsWriter(Participant& participant, core::RegionId region)
@@ -28,7 +35,8 @@ void SceneAdditionsWriter::send(const SceneAdditions& additions) {
   batch.generation = additions.generation;
   batch.orders = additions.orders;
   batch.stamp = static_cast<core::Step>(additions.orders.size());
-  impl_->writer.send_newest(batch);
+  impl_->make_writer();
+  impl_->writer->send_newest(batch);
 }
 
 struct SceneAdditionsReader::Impl {

@@ -100,6 +100,13 @@ std::optional<ProcessPrefix> Speakers::of(core::RegionId region) const {
   return found == nodes_.end() ? std::nullopt : std::optional(found->second);
 }
 
+std::optional<core::RegionId> Speakers::home_of(const Guid& writer) const {
+  const std::lock_guard lock(mutex_);
+  const auto home = homes_.find(writer);
+  if (home == homes_.end() || home->second < 0) return std::nullopt;
+  return core::RegionId{static_cast<std::uint32_t>(home->second)};
+}
+
 bool Speakers::is_at_home(const Guid& writer, core::RegionId region) const {
   const std::lock_guard lock(mutex_);
   const auto home = homes_.find(writer);

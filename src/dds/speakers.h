@@ -40,6 +40,8 @@ class Speakers {
   void set(core::RegionId region, const ProcessPrefix& process);
   std::optional<ProcessPrefix> of(core::RegionId region) const;
 
+  /// The region to which all partitions of `writer` belong. Nothing: none, several, or the writer is unknown.
+  std::optional<core::RegionId> home_of(const Guid& writer) const;
   /// True when all partitions of `writer` belong to `region`. Also true for an unknown writer.
   bool is_at_home(const Guid& writer, core::RegionId region) const;
   /// True when `endpoint` belongs to the process that is the node of `region`. Also true while that node is unknown.

@@ -31,6 +31,7 @@ void ReaderWatch::on_subscription_matched(eprosima::fastdds::dds::DataReader*,
     if (status.current_count_change > 0) {
       RemoteWriter writer;
       writer.guid = guid;
+      if (region_of_) writer.region = region_of_(guid);
       writer.order = ++order_;
       writers_.push_back(writer);
     } else if (RemoteWriter* writer = find_matched(guid)) {
@@ -70,22 +71,35 @@ std::vector<RemoteWriter> ReaderWatch::writers() const {
   return result;
 }
 
-RemoteWriter ReaderWatch::latest(const std::optional<ProcessPrefix>& node) const {
+RemoteWriter ReaderWatch::latest(const std::optional<ProcessPrefix>& node,
+                                 const std::optional<core::RegionId>& region) const {
   const std::lock_guard lock(mutex_);
-  if (writers_.empty()) return {};
-  const auto is_here = [this](const RemoteWriter& writer) { return !judged(writer).lost; };
-  const auto first = std::ranges::find_if(writers_, is_here);
-  const ProcessPrefix process = node ? *node : (first == writers_.end() ? writers_.back() : *first).guid.guidPrefix;
-  const auto last = std::find_if(writers_.rbegin(), writers_.rend(),
-                                 [&](const RemoteWriter& writer) { return writer.guid.guidPrefix == process; });
-  return last == writers_.rend() ? RemoteWriter{} : judged(*last);
+  const RemoteWriter* first_here = nullptr;  // the first that is not lost
+  const RemoteWriter* last = nullptr;
+  for (const RemoteWriter& writer : writers_) {
+    if ((node && writer.guid.guidPrefix != *node) || !is_of(writer, region)) continue;
+    last = &writer;
+    if (first_here == nullptr && !node && !judged(writer).lost) first_here = &writer;
+  }
+  if (last == nullptr) return {};
+  if (first_here == nullptr) return judged(*last);
+  for (const RemoteWriter& writer : writers_) {
+    if (writer.guid.guidPrefix == first_here->guid.guidPrefix && is_of(writer, region)) last = &writer;
+  }
+  return judged(*last);
 }
 
-bool ReaderWatch::any_matched(const std::optional<ProcessPrefix>& node) const {
+bool ReaderWatch::any_matched(const std::optional<ProcessPrefix>& node,
+                              const std::optional<core::RegionId>& region) const {
   const std::lock_guard lock(mutex_);
   return std::ranges::any_of(writers_, [&](const RemoteWriter& writer) {
-    return writer.matched && (!node || writer.guid.guidPrefix == *node);
+    return writer.matched && (!node || writer.guid.guidPrefix == *node) && is_of(writer, region);
   });
+}
+
+bool ReaderWatch::is_of(const RemoteWriter& writer, const std::optional<core::RegionId>& region) const {
+  if (!region || writer.region == region) return true;
+  return !writer.region && region_of_ && region_of_(writer.guid) == region;
 }
 
 std::uint64_t ReaderWatch::changes() const {

@@ -4,9 +4,11 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <fastdds/dds/publisher/DataWriterListener.hpp>
@@ -25,7 +27,8 @@ using ProcessPrefix = eprosima::fastrtps::rtps::GuidPrefix_t;
 /// One match of a reader with a writer. A writer that is matched anew is a new entry.
 struct RemoteWriter {
   Guid guid;
-  std::uint64_t order = 0;  ///< counts matches, from 1
+  std::optional<core::RegionId> region;  ///< whose it is, if that was known when it was matched
+  std::uint64_t order = 0;               ///< counts matches, from 1
   bool matched = true;
   bool alive = false;  ///< has proved its life and the proof has not run out
   /// Time when its proof of life ran out. Nothing while it is valid, or before the first one.
@@ -41,7 +44,10 @@ struct RemoteWriter {
 /// load). A process that takes its leave is unmatched at once: that needs no grace.
 class ReaderWatch final : public eprosima::fastdds::dds::DataReaderListener {
  public:
-  explicit ReaderWatch(Wakeup& wakeup) : wakeup_(wakeup) {}
+  using RegionOf = std::function<std::optional<core::RegionId>(const Guid&)>;
+
+  /// `region_of` tells whose a writer is, by the partition that it announces. Thread-safe.
+  explicit ReaderWatch(Wakeup& wakeup, RegionOf region_of = {}) : wakeup_(wakeup), region_of_(std::move(region_of)) {}
 
   static constexpr std::chrono::nanoseconds kForEver = std::chrono::nanoseconds::max();
   /// Sets the grace time. Call it before the reader exists. At least two proofs of life must fit into it. kForEver:
@@ -57,10 +63,13 @@ class ReaderWatch final : public eprosima::fastdds::dds::DataReaderListener {
   /// Writers in order of match; those that are gone are kept.
   std::vector<RemoteWriter> writers() const;
   /// Returns the writer of process `node` that was matched last. Without `node`: the first writer here that is not
-  /// lost, or else the one matched last. Its order is 0 when there never was one.
-  RemoteWriter latest(const std::optional<ProcessPrefix>& node = {}) const;
-  /// True when a writer is matched; with `node`, a writer of that process.
-  bool any_matched(const std::optional<ProcessPrefix>& node = {}) const;
+  /// lost, or else the one matched last. Its order is 0 when there never was one. With `region`, only writers of that
+  /// region count.
+  RemoteWriter latest(const std::optional<ProcessPrefix>& node = {},
+                      const std::optional<core::RegionId>& region = {}) const;
+  /// True when a writer is matched; with `node`, a writer of that process; with `region`, a writer of that region.
+  bool any_matched(const std::optional<ProcessPrefix>& node = {},
+                   const std::optional<core::RegionId>& region = {}) const;
   /// Number of matches, ends of matches, and changes of a proof of life so far.
   std::uint64_t changes() const;
 
@@ -69,8 +78,10 @@ class ReaderWatch final : public eprosima::fastdds::dds::DataReaderListener {
   void forget_all_but_newest_lost();
   /// Returns a copy with `lost` set as of now.
   RemoteWriter judged(RemoteWriter writer) const;
+  bool is_of(const RemoteWriter& writer, const std::optional<core::RegionId>& region) const;
 
   Wakeup& wakeup_;
+  RegionOf region_of_;
   std::chrono::nanoseconds grace_{0};
   mutable std::mutex mutex_;
   std::vector<RemoteWriter> writers_;

@@ -1,6 +1,9 @@
 // When a remote writer counts as lost, without DDS: the listener is told what Fast DDS would tell it.
 #include "dds/watch.h"
 
+#include <map>
+#include <optional>
+
 #include <gtest/gtest.h>
 
 namespace aurasim::dds {
@@ -44,6 +47,28 @@ TEST_F(Watched, AWriterIsNeitherAliveNorLostBeforeItsFirstProofOfLife) {
   EXPECT_FALSE(watch_.latest().lost);
   EXPECT_TRUE(watch_.any_matched());
   EXPECT_TRUE(wakeup_.wait(0ns));
+}
+
+TEST_F(Watched, WritersOfSeveralRegionsAreToldApart) {
+  std::map<Guid, core::RegionId> homes = {{writer(1), core::RegionId{1}}};
+  ReaderWatch watch(wakeup_, [&](const Guid& guid) {
+    const auto home = homes.find(guid);
+    return home == homes.end() ? std::nullopt : std::optional(home->second);
+  });
+  for (const unsigned char number : {1, 2, 3}) {
+    SubscriptionMatchedStatus status;
+    status.current_count_change = 1;
+    status.last_publication_handle = writer(number);
+    watch.on_subscription_matched(nullptr, status);
+  }
+  homes[writer(2)] = core::RegionId{2};  // known only after the match
+  EXPECT_EQ(watch.latest({}, core::RegionId{1}).guid, writer(1));
+  EXPECT_EQ(watch.latest({}, core::RegionId{2}).guid, writer(2));
+  EXPECT_EQ(watch.latest({}, core::RegionId{3}).order, 0U);
+  EXPECT_EQ(watch.latest(writer(1).guidPrefix, core::RegionId{2}).order, 0U);
+  EXPECT_TRUE(watch.any_matched({}, core::RegionId{2}));
+  EXPECT_FALSE(watch.any_matched({}, core::RegionId{3}));
+  EXPECT_FALSE(watch.any_matched(writer(3).guidPrefix, core::RegionId{1}));
 }
 
 TEST_F(Watched, SilenceIsBelievedAfterTheGraceTime) {
