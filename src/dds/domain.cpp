@@ -36,6 +36,15 @@ void be_patient_with_this(DomainParticipantQos& qos) {
   lease = eprosima::fastrtps::Duration_t(static_cast<std::int32_t>(kPatientLease.count()), 0);
 }
 
+void announce_less(DomainParticipantQos& qos, std::chrono::nanoseconds shortest) {
+  auto& discovery = qos.wire_protocol().builtin.discovery_config;
+  const std::chrono::nanoseconds lease(discovery.leaseDuration.to_ns());
+  const std::chrono::nanoseconds period = std::min(shortest, lease / 4);
+  if (period.count() <= discovery.leaseDuration_announcementperiod.to_ns()) return;
+  discovery.leaseDuration_announcementperiod =
+      eprosima::fastrtps::Duration_t(std::chrono::duration<double>(period).count());
+}
+
 /// Switches Fast DDS's intraprocess delivery off, so that regions in one process communicate over the wire like regions
 /// in two.
 void switch_intraprocess_delivery_off() {
@@ -63,13 +72,14 @@ Domain::Domain(const Settings& settings)
   loopback_only_ = on_loopback_only(qos);
   believes_silence_ = settings.believes_silence || !loopback_only_;
   if (!believes_silence_) be_patient_with_this(qos);
+  // A discovery server has to be asked again until it answers.
+  const bool finds_all_itself = settings.discovery != config::Discovery::kServer;
+  if (finds_all_itself) announce_less(qos, shortest_announcement_period(settings.nodes));
   const Impairment impairment = settings.impairment.over(impairment_in(qos.properties(), profiles_.file().string()));
   if (impairment.any()) {
     delay_line_ =
         std::make_shared<DelayLine>(impairment, settings.impairment_stream, metatraffic_ports(qos, settings.domain));
   }
-  // A discovery server has to be asked again until it answers.
-  const bool finds_all_itself = settings.discovery != config::Discovery::kServer;
   install(qos, {guard_, delay_line_, shortest_between_announcements(finds_all_itself ? settings.nodes : 1)});
   switch_intraprocess_delivery_off();
   messages::set_type_tables_up();

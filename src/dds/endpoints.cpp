@@ -78,6 +78,12 @@ std::uint32_t entity_of(const Guid& endpoint) {
   return entity;
 }
 
+/// Makes a time of a profile at least so long.
+void be_patient(eprosima::fastrtps::Duration_t& time, std::chrono::nanoseconds shortest) {
+  if (shortest.count() > time.to_ns())
+    time = eprosima::fastrtps::Duration_t(std::chrono::duration<double>(shortest).count());
+}
+
 [[noreturn]] void throw_not_created(const char* what, const EndpointSpec& spec) {
   throw DdsError(fmt::format("cannot create the {} of topic {} in partition {} (Fast DDS says more on standard error)",
                              what, name_of(spec.topic), fmt::join(spec.partitions, ", ")));
@@ -104,10 +110,7 @@ Writer::Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
     qos.user_data().setValue(user_data_of(*spec.region));
   }
   if (part_fields_ != nullptr) make_room_for_parts(qos, domain);
-  auto& heartbeat = qos.reliable_writer_qos().times.heartbeatPeriod;
-  const std::chrono::nanoseconds shortest = shortest_heartbeat(spec.topic, domain.nodes());
-  if (shortest.count() > heartbeat.to_ns())
-    heartbeat = eprosima::fastrtps::Duration_t(std::chrono::duration<double>(shortest).count());
+  be_patient(qos.reliable_writer_qos().times.heartbeatPeriod, shortest_heartbeat(spec.topic, domain.nodes()));
   writer_ = publisher_->create_datawriter(&topic, qos, &watch_, StatusMask::publication_matched());
   if (writer_ == nullptr) {
     throw_not_created("writer", spec);
@@ -118,7 +121,9 @@ Writer::Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
   }
   domain.speakers().add(writer_->guid(), spec.partitions);  // own readers may hear it
   if (qos.liveliness().kind == eprosima::fastdds::dds::MANUAL_BY_TOPIC_LIVELINESS_QOS) {
-    domain.liveliness().add(writer_, std::chrono::nanoseconds(qos.liveliness().lease_duration.to_ns()));
+    const bool is_sparse = is_renewed_sparsely(domain.nodes(), domain.believes_silence());
+    domain.liveliness().add(writer_, std::chrono::nanoseconds(qos.liveliness().lease_duration.to_ns()),
+                            is_sparse ? &written_ns_ : nullptr);
   }
 }
 
@@ -170,11 +175,13 @@ WriteResult Writer::write_parts(void* message, std::uint32_t message_B) {
 }
 
 WriteResult Writer::write_sample(void* sample) {
-  if (writer_->write(sample, HANDLE_NIL) == ReturnCode_t::RETCODE_OK) {
-    return WriteResult::kSent;
+  WriteResult result = WriteResult::kSent;
+  if (writer_->write(sample, HANDLE_NIL) != ReturnCode_t::RETCODE_OK) {
+    result = WriteResult::kSentAtSecondTry;
+    if (writer_->write(sample, HANDLE_NIL) != ReturnCode_t::RETCODE_OK) return WriteResult::kFailed;
   }
-  const bool sent = writer_->write(sample, HANDLE_NIL) == ReturnCode_t::RETCODE_OK;
-  return sent ? WriteResult::kSentAtSecondTry : WriteResult::kFailed;
+  written_ns_.store(LivelinessAsserter::now_ns(), std::memory_order_relaxed);
+  return result;
 }
 
 void Writer::forget_all() {
@@ -246,7 +253,10 @@ Reader::Reader(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
   if (spec.best_effort_if_volatile && qos.durability().kind == eprosima::fastdds::dds::VOLATILE_DURABILITY_QOS) {
     qos.reliability().kind = eprosima::fastdds::dds::BEST_EFFORT_RELIABILITY_QOS;
   }
+  be_patient(qos.reliable_reader_qos().times.initialAcknackDelay, shortest_heartbeat(spec.topic, domain.nodes()));
   if (qos.liveliness().kind == eprosima::fastdds::dds::MANUAL_BY_TOPIC_LIVELINESS_QOS) {
+    if (is_renewed_sparsely(domain.nodes(), domain.believes_silence()))
+      be_patient(qos.liveliness().lease_duration, kSparseLease);
     const std::chrono::nanoseconds lease(qos.liveliness().lease_duration.to_ns());
     watch_.set_grace(domain.believes_silence() ? lease / 2 : ReaderWatch::kForEver);
   }

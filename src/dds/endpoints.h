@@ -81,8 +81,9 @@ class Writer {
   std::shared_ptr<void> part_;                         ///< sample, reused
   std::uint64_t messages_in_parts_ = 0;
   WriterWatch watch_;
-  bool is_of_nodes_ = false;  ///< its samples are messages between nodes
-  std::int32_t unread_ = 0;   ///< calls of forget_acknowledged() since every reader had acknowledged everything
+  bool is_of_nodes_ = false;                        ///< its samples are messages between nodes
+  LivelinessAsserter::Nanoseconds written_ns_ = 0;  ///< when the last sample was written
+  std::int32_t unread_ = 0;  ///< calls of forget_acknowledged() since every reader had acknowledged everything
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
   eprosima::fastdds::dds::DataWriter* writer_ = nullptr;
 };

@@ -24,11 +24,12 @@ LivelinessAsserter::~LivelinessAsserter() {
   thread_.join();
 }
 
-void LivelinessAsserter::add(eprosima::fastdds::dds::DataWriter* writer, std::chrono::nanoseconds lease) {
+void LivelinessAsserter::add(eprosima::fastdds::dds::DataWriter* writer, std::chrono::nanoseconds lease,
+                             const Nanoseconds* written) {
   progress();
   {
     const std::lock_guard lock(mutex_);
-    writers_.push_back(writer);
+    writers_.push_back({writer, lease, written});
     interval_ = std::min(interval_, lease / 4);
   }
   condition_.notify_one();
@@ -36,7 +37,7 @@ void LivelinessAsserter::add(eprosima::fastdds::dds::DataWriter* writer, std::ch
 
 void LivelinessAsserter::remove(eprosima::fastdds::dds::DataWriter* writer) {
   const std::lock_guard lock(mutex_);
-  std::erase(writers_, writer);
+  std::erase_if(writers_, [writer](const Renewed& one) { return one.writer == writer; });
 }
 
 void LivelinessAsserter::progress() { last_progress_ns_.store(now_ns(), std::memory_order_relaxed); }
@@ -47,12 +48,20 @@ void LivelinessAsserter::run() {
     look_at_computation();
     if (!owner_hangs()) {
       if (show_life_) show_life_();
-      for (auto* writer : writers_) {
-        writer->assert_liveliness();
-      }
+      for (Renewed& one : writers_) renew(one);
     }
     condition_.wait_for(lock, interval_);
   }
+}
+
+void LivelinessAsserter::renew(Renewed& one) const {
+  const std::int64_t now = now_ns();
+  if (one.written != nullptr) {
+    const std::int64_t proved = std::max(one.written->load(std::memory_order_relaxed), one.renewed_ns);
+    if (now - proved < one.lease.count() * 3 / 8) return;
+  }
+  one.writer->assert_liveliness();
+  one.renewed_ns = now;
 }
 
 void LivelinessAsserter::look_at_computation() {

@@ -9,8 +9,16 @@ namespace aurasim::rtps {
 namespace {
 
 constexpr std::size_t kHeader_B = 20, kSubmessageHeader_B = 4;
-constexpr std::uint8_t kInfoTimestamp = 0x09, kInfoDestination = 0x0e, kData = 0x15;
+/// eProsima's statistics end each datagram of a Fast DDS that is built with them, as Debian's is.
+constexpr std::uint8_t kInfoTimestamp = 0x09, kInfoDestination = 0x0e, kData = 0x15, kStatistics = 0x80;
 constexpr std::uint8_t kLittleEndian = 0x01, kHasData = 0x04;
+
+/// True if nothing but statistics follows the submessage that has `size` bytes from here; 0: all that are left.
+bool is_last(WireCursor rest, std::size_t size) {
+  if (size == 0 || size == rest.left()) return true;
+  rest.skip(size);
+  return !rest.failed() && rest.left() >= kSubmessageHeader_B && rest.u8() == kStatistics;
+}
 
 }  // namespace
 
@@ -22,8 +30,7 @@ std::optional<std::uint64_t> announcement_in(std::span<const std::uint8_t> datag
     rest.set_little((flags & kLittleEndian) != 0);
     const std::size_t size = rest.u16();
     if (kind == kData) {
-      const bool is_last = size == 0 || size == rest.left();
-      if (!is_last || (flags & kHasData) == 0) return std::nullopt;
+      if (!is_last(rest, size) || (flags & kHasData) == 0) return std::nullopt;
       rest.skip(8);  // extra flags, octets to inline QoS, reader
       const std::uint32_t writer = rest.entity();
       const std::uint64_t number = rest.sequence_number();

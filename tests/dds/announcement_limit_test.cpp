@@ -26,6 +26,8 @@ TEST(AnAnnouncement, IsFoundByItsWriter) {
   EXPECT_EQ(announcement_in(datagram({timestamp(), data(kEndpointWriter, 7, said)})), std::nullopt);
   EXPECT_EQ(announcement_in(datagram({timestamp(), data(kParticipantWriter, 7, said), timestamp()})), std::nullopt)
       << "there is more in it";
+  const Octets statistics = submessage(0x80, 0, Octets().zeros(56));
+  EXPECT_EQ(announcement_in(datagram({timestamp(), data(kParticipantWriter, 7, said), statistics})), 7U);
   EXPECT_EQ(announcement_in(datagram({})), std::nullopt);
 }
 
@@ -62,7 +64,13 @@ TEST(ManyNodes, AreTenAndMore) {
   EXPECT_EQ(shortest_between_announcements(9), 0ns);
   EXPECT_EQ(shortest_between_announcements(64), 640ms);
   EXPECT_EQ(shortest_heartbeat(TopicId::kNodeStatus, 9), 0ns);
-  EXPECT_EQ(shortest_heartbeat(TopicId::kNodeStatus, 64), 640ms);
+  EXPECT_EQ(dds::shortest_announcement_period(9), 0ns);
+  EXPECT_EQ(dds::shortest_announcement_period(64), 2560ms);
+  EXPECT_EQ(shortest_heartbeat(TopicId::kNodeStatus, 64), 2560ms);
+  EXPECT_EQ(shortest_heartbeat(TopicId::kRegionMap, 64), 640ms);
+  EXPECT_FALSE(dds::is_renewed_sparsely(9, false));
+  EXPECT_FALSE(dds::is_renewed_sparsely(64, true)) << "silence may be a death";
+  EXPECT_TRUE(dds::is_renewed_sparsely(64, false));
   EXPECT_EQ(shortest_heartbeat(TopicId::kRunControl, 64), 100ms);
   for (const TopicId topic : {TopicId::kAura, TopicId::kMigration, TopicId::kMigrationAck, TopicId::kSeam}) {
     EXPECT_EQ(shortest_heartbeat(topic, 64), 0ns) << "a step waits for it";

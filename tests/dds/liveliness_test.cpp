@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "aurasim.h"
 #include "child.h"
+#include "dds/endpoints.h"
+#include "dds/many_nodes.h"
 #include "transport_fixture.h"
 
 namespace aurasim::dds {
@@ -178,6 +181,47 @@ TEST_F(Neighbour, ThatIsDeadNeverBlocksASend) {
   EXPECT_EQ(here_->transport.counters().aura.send_failed, 0U);
   EXPECT_EQ(here_->transport.counters().migration.send_failed, 0U);
   EXPECT_LE(slow, 3) << "a send that blocks does so every time; a busy machine, once in a while";
+}
+
+/// A status writer of a watched node, which proves its life once, by a sample, and a reader of another such node.
+struct ProvedOnce {
+  explicit ProvedOnce(std::size_t nodes)
+      : there(settings_of(nodes)),
+        here(settings_of(nodes)),
+        writer(there.domain(), on(TopicId::kNodeStatus, {.source = RegionId{1}}, RegionId{1}), there.domain().wakeup()),
+        reader(here.domain(), on(TopicId::kNodeStatus), here.domain().wakeup()) {}
+
+  static Settings settings_of(std::size_t nodes) {
+    Settings settings = testing::settings_for(own_domain());
+    settings.nodes = nodes;
+    settings.believes_silence = false;
+    settings.hang_limit = 1ms;
+    return settings;
+  }
+  bool prove() {
+    if (!testing::holds_in_time([&] { return reader.watch().any_matched() && writer.reader_count() == 1; }))
+      return false;
+    wire::NodeStatus status;
+    writer.write(&status);
+    return testing::holds_in_time([&] { return reader.watch().latest().alive; });
+  }
+
+  Participant there, here;
+  Writer writer;
+  Reader reader;
+};
+
+TEST(AWatchedNode, OfManyMayBeSilentForLongerThanItsLease) {
+  ProvedOnce of_many(kManyNodes);
+  ASSERT_TRUE(of_many.prove());
+  std::this_thread::sleep_for(2s);
+  EXPECT_TRUE(of_many.reader.watch().latest().alive);
+}
+
+TEST(AWatchedNode, OfFewShowsItsSilence) {
+  ProvedOnce of_few(kManyNodes - 1);
+  ASSERT_TRUE(of_few.prove());
+  EXPECT_TRUE(testing::holds_in_time([&] { return !of_few.reader.watch().latest().alive; }));
 }
 
 }  // namespace
