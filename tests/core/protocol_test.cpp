@@ -174,18 +174,37 @@ TEST_F(ProtocolTest, AnAuraOfALowerRegionPullsAndOneOfAHigherDoesNot) {
   EXPECT_EQ(departures[0].reason, HandOffReason::kAuraCollision);
 }
 
+/// In one message, of up to 32 bodies.
 TEST_F(ProtocolTest, ClustersThatLeaveForOneRegionTogetherAreOneHandOff) {
-  host(1, {0.4, 0, 0});
-  host(2, {0.4, 20, 0});
+  AuraBatch sent = batch(0, 0);
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    host(i, Vec3(0.45, 20.0 * i, 0));
+    sent.updates.push_back(foreign(100 + i, Vec3(-0.45, 20.0 * i, 0), 0, 0));
+  }
   start(1);
-  AuraBatch both = batch(0, 0);
-  both.updates = {foreign(7, {-0.4, 0, 0}, 0, 0), foreign(8, {-0.4, 20, 0}, 0, 0)};
-  receive(std::move(both));
+  receive(std::move(sent));
   receive_next();
-  const std::vector<Departure>& leave = observe();
-  ASSERT_EQ(leave.size(), 1u);
-  EXPECT_EQ(leave[0].bodies, (std::vector{body(1), body(2)}));
-  EXPECT_EQ(protocol->outbox().hand_offs.size(), 1u);
+  const std::vector<Departure>& departures = observe();
+  ASSERT_EQ(departures.size(), 2u);
+  EXPECT_EQ(departures[0].bodies.size(), 32u);
+  EXPECT_EQ(departures[1].bodies.size(), 8u);
+  EXPECT_EQ(protocol->outbox().hand_offs.size(), 2u);
+}
+
+TEST_F(ProtocolTest, ARegionThatPullsNothingFromHereIsComparedWithBodiesThatAreOutsideOnly) {
+  settings.aura.redo = true;
+  const auto pairs = [this](double x) {
+    snapshot.bodies.clear();
+    now = 0;
+    host(1, Vec3(x, 0, 0));
+    start(0);
+    receive_batch_of_1({foreign(2, Vec3(x + 0.9, 0, 0))});
+    receive_next();
+    observe();
+    return protocol->matching().pairs().size();
+  };
+  EXPECT_EQ(pairs(-0.45), 0u);
+  EXPECT_EQ(pairs(5), 1u);
 }
 
 TEST_F(ProtocolTest, TheLowestOfSeveralRegionsPulls) {
