@@ -45,9 +45,9 @@ struct AuraRules {
   /// to a redo: each further hop lets links reach farther, and dense worlds come to be one cluster
   /// (docs/decisions/0033-no-pushes.md).
   bool pulls_chain() const { return !redo; }
-  /// So many hops more than usual a cluster looks before it goes home, and auras are announced so much earlier. Where
-  /// states are checked it is none: in dense worlds, clusters that are in no hurry fill the neighbours' regions
-  /// (docs/decisions/0046-home-soon.md).
+  /// Number of hops by which a cluster looks further ahead than usual before it goes home, and by which auras are
+  /// announced earlier. It is 0 where states are checked: in dense worlds, clusters that are in no hurry fill the
+  /// neighbours' regions (docs/decisions/0046-home-soon.md).
   int homeward_hops() const { return pulls_chain() ? horizon::kHomewardHops : 0; }
   /// At how many instants of each step of two paths an aura tests whether the bodies touch.
   int instants() const { return looks_ahead() ? 4 : looks(); }

@@ -19,10 +19,6 @@ Rectangle grown(const Rectangle& area, double by_m) {
   return {area.x0 - by_m, area.y0 - by_m, area.x1 + by_m, area.y1 + by_m};
 }
 
-bool overlap(const Rectangle& a, const Rectangle& b) {
-  return a.x0 <= b.x1 && b.x0 <= a.x1 && a.y0 <= b.y1 && b.y0 <= a.y1;
-}
-
 }  // namespace
 
 BlockOwners::BlockOwners(const RegionMap& map, double side_m, double reach_m, double way_m)
@@ -40,7 +36,7 @@ BlockOwners::BlockOwners(const RegionMap& map, double side_m, double reach_m, do
   }
 }
 
-bool BlockOwners::are_near(RegionId a, RegionId b) const { return overlap(surroundings(a), surroundings(b)); }
+bool BlockOwners::are_near(RegionId a, RegionId b) const { return surroundings(a).distance(surroundings(b)) == 0; }
 
 double usual_reach_m(const std::vector<double>& radii_m, double side_m) {
   double largest = 0;

@@ -18,7 +18,7 @@ class BlockOwners {
   RegionId owner(const Block& block) const { return map_.owner(side_m_ * (block.x + 0.5), side_m_ * (block.y + 0.5)); }
   /// Where bodies of the region usually are. Bodies that extend beyond it are far.
   const Rectangle& territory(RegionId id) const { return territories_.at(value_of(id)); }
-  /// What no body of the region reaches beyond in the next step, unless its host says so beforehand
+  /// The area that bodies of the region do not reach beyond in the next step. Where one may, its host says so before
   /// (core/seam_partners.h).
   const Rectangle& surroundings(RegionId id) const { return surroundings_.at(value_of(id)); }
   /// Do the surroundings of two regions overlap?

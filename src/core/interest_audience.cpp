@@ -33,7 +33,7 @@ double InterestMatching::band(double speed_m_s, int hops) const {
 
 /// Where pulls do not chain, zones do not depend on clusters. So they are known before bodies are compared.
 void InterestMatching::find_zones() {
-  widest_band_m_ = band(top_speed(), clusters_.most_hops() + aura_.rules().homeward_hops());
+  widest_band_m_ = band(top_speed(), clusters_.most_hops() + homeward_hops());
   for (const std::uint32_t i : own_.close()) zones_[i] = zone_of(i);
 }
 
@@ -42,7 +42,7 @@ Audience InterestMatching::zone_of(std::uint32_t i) const {
   const Path& path = own_.path(i);
   const Vec3& p = path.pose.p_WB;
   if (vicinity_.deep_inside(p, widest_band_m_ + path.radius_m)) return kNobodyListens;
-  const int hops = clusters_.hops(i) + aura_.rules().homeward_hops();
+  const int hops = clusters_.hops(i) + homeward_hops();
   if (!aura_.rules().redo || !aura_.predicts()) {
     return vicinity_.within(p, band(path.speed_m_s, hops) + path.radius_m);
   }

@@ -42,9 +42,11 @@ void InterestMatching::judge() {
     hits_.push_back({pair.own, foreign_[pair.foreign].host});
     hit(pair.own, foreign_[pair.foreign].host);
   }
-  if (!pulls_chain()) complete_hit_clusters();
-  if (!pulls_chain()) return;
-  for (const Pair& pair : pairs_) judge_expected(pair);
+  if (pulls_chain()) {
+    for (const Pair& pair : pairs_) judge_expected(pair);
+  } else {
+    complete_hit_clusters();
+  }
 }
 
 /// Completes the clusters that an aura met, and those that may have to go home. Their bodies were judged as members of

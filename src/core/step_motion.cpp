@@ -5,14 +5,10 @@
 
 namespace aurasim::core {
 
-/// How far a path of length `longest` between two points can leave the straight line, if they are `apart` from each
-/// other.
 double bulge(double longest, double apart) {
   return longest > apart ? 0.5 * std::sqrt(longest * longest - apart * apart) : 0;
 }
 
-/// The motion of a body through the step that ends in `now`. Without `before`, its announcement has just begun: it was
-/// far from foreign bodies a state ago, so a straight way is assumed.
 StepMotion StepMotions::of(const Path& now, const Path* before) const {
   const double step_s = aura_.rules().step_s;
   StepMotion motion{now, now, 0};
@@ -93,7 +89,6 @@ bool StepMotions::meet_ahead(const StepMotion& a, const StepMotion& b, double al
   return (way - way_at_end).norm() > allowed_m && meet_on(at, bt, a, b, way_at_end, allowed_m);
 }
 
-/// May two bodies have touched during the step? Physics looks for contacts at the start of each substep.
 bool StepMotions::touch(const StepMotion& a, const StepMotion& b) const {
   const int substeps = aura_.rules().looks();
   const double margin = aura_.rules().contact_margin_m * aura_.rules().check_scale;

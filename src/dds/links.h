@@ -16,7 +16,7 @@
 
 namespace aurasim::dds {
 
-/// What belongs to one other region.
+/// A region's endpoints for one other region, and what is known of that one.
 struct Link {
   core::RegionId region{};
   const Reader* auras = nullptr;  ///< the reader that hears its batches

@@ -38,6 +38,11 @@ inline bool overlap(const Bounds& bounds, const core::Rectangle& area) {
   return bounds.low.x() <= area.x1 && bounds.high.x() >= area.x0 && bounds.low.y() <= area.y1 &&
          bounds.high.y() >= area.y0;
 }
+/// Is the box within the area in the x-y plane?
+inline bool is_within(const Bounds& bounds, const core::Rectangle& area) {
+  return bounds.low.x() >= area.x0 && bounds.high.x() <= area.x1 && bounds.low.y() >= area.y0 &&
+         bounds.high.y() <= area.y1;
+}
 /// The broadphase's box of an object, which contains bounds_of(body).
 inline Bounds bounds_of(const btBroadphaseProxy& proxy) { return {proxy.m_aabbMin, proxy.m_aabbMax}; }
 

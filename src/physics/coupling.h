@@ -39,7 +39,7 @@ void expect_to_meet(const Coupling& coupling, core::RegionId other);
 /// The same for these regions, each with each and with this one.
 void expect_all_to_meet(const Coupling& coupling, std::span<const core::RegionId> others);
 
-/// Who owns which block, and how far bodies usually get.
+/// The owners of the blocks of a scene whose regions are coupled, with the territories that follow from its bodies.
 core::BlockOwners block_owners(const core::RegionMap& map, const core::Scene& scene, const Settings& settings);
 
 /// Added to the bounds of bodies, m. Covers the damping of speeds in the step, and rounding.

@@ -22,11 +22,6 @@
 namespace aurasim::physics {
 namespace {
 
-bool is_within(const Bounds& bounds, const core::Rectangle& area) {
-  return bounds.low.x() >= area.x0 && bounds.high.x() <= area.x1 && bounds.low.y() >= area.y0 &&
-         bounds.high.y() <= area.y1;
-}
-
 bool overlap(const Bounds& a, const Bounds& b) { return TestAabbAgainstAabb2(a.low, a.high, b.low, b.high); }
 
 }  // namespace
@@ -117,7 +112,7 @@ void Simulation::meet_neighbours() {
   note_all();
 }
 
-/// What a body may touch is of regions with which this one exchanges parcels in this step.
+/// Throws std::logic_error unless this region exchanges parcels with all regions whose territory a body may reach.
 void Simulation::check_partners(const Bounds& reach) const {
   const core::BlockOwners& owners = *coupling_->owners;
   if (is_within(reach, owners.surroundings(coupling_->self))) return;

@@ -16,18 +16,6 @@
 #include "physics/soft/seams.h"
 
 namespace aurasim::physics {
-namespace {
-
-/// Half of a square around a body.
-struct Square {
-  double x, y, half_m;
-
-  bool is_within(const core::Rectangle& area) const {
-    return x - half_m >= area.x0 && x + half_m <= area.x1 && y - half_m >= area.y0 && y + half_m <= area.y1;
-  }
-};
-
-}  // namespace
 
 /// May a body have a contact of the phase of giants in the next step? Two bodies that are no giants have one only if
 /// what they reach is large for a block: docs/design.md, "Blocks", with the reach of each instead of radius and gap.
@@ -66,10 +54,9 @@ std::vector<core::Introduction> Simulation::introductions_ahead() const {
     if (!body.born || is_guest(*body.rigid)) continue;
     const btVector3& p_WB = body.rigid->getWorldTransform().getOrigin();
     const double way_m = way_ahead_m(*scene_, settings_, static_cast<double>(body.rigid->getLinearVelocity().length()));
-    const Square around{static_cast<double>(p_WB.x()), static_cast<double>(p_WB.y()),
-                        place_of(*body.rigid).radius_m + 2 * way_m};
+    const Bounds around = Bounds{p_WB, p_WB}.grown(scalar(place_of(*body.rigid).radius_m + 2 * way_m));
     const core::RegionId host = host_of(body);
-    const bool is_usual = around.is_within(owners.surroundings(host)) && !may_be_in_chains(body, way_m);
+    const bool is_usual = is_within(around, owners.surroundings(host)) && !may_be_in_chains(body, way_m);
     if (host == self && is_usual) continue;
     reached.clear();
     find_reached(body, way_m, reached);

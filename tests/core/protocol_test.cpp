@@ -102,7 +102,7 @@ TEST_F(ProtocolTest, ABodyThatAnotherNodeHostsTooIsAnnouncedToAll) {
   EXPECT_EQ(protocol->outbox().aura.updates[0].audience, kAllListeners);
 }
 
-/// Nobody at the place of such a body would compare it with what others host there.
+/// A dead node compares nothing over its region, so those who host bodies there have to know of each other.
 TEST_F(ProtocolTest, ABodyOverADeadRegionIsAnnouncedToAll) {
   settings.aura.redo = true;
   host(1, Vec3(20, 0, 0)).epoch = 1;
