@@ -200,9 +200,11 @@ bool Intake::has_all(RegionId region, Step until) const {
   return neighbour == nullptr || has_all(*neighbour, until);
 }
 
+/// A region that begins to listen in a later state is not waited for: the first words may have gone out before its
+/// reader was matched, and no body of the two can meet before that state.
 bool Intake::all_have_said(Step stamp, std::uint32_t number) const {
   return std::ranges::all_of(neighbours_, [&](const Neighbour& neighbour) {
-    return !neighbour.alive() || neighbour.word(stamp, number) != nullptr;
+    return !neighbour.alive() || neighbour.start() > stamp || neighbour.word(stamp, number) != nullptr;
   });
 }
 

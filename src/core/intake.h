@@ -72,7 +72,7 @@ class Intake {
   /// neighbour.
   bool has_all(RegionId region, Step until) const;
 
-  /// Have all live neighbours said this word in state `stamp`?
+  /// Have all live neighbours that publish state `stamp` said this word in it?
   bool all_have_said(Step stamp, std::uint32_t number) const;
 
   std::span<const Neighbour> neighbours() const { return neighbours_; }

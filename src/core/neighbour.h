@@ -16,9 +16,17 @@ class Neighbour {
  public:
   /// `start`: the first state that the neighbour publishes.
   Neighbour(RegionId id, RegionId self, Step start = 0)
-      : id_(id), self_(self), in_effect_(self), arrived_(self), received_(start - 1), applied_(start - 1) {}
+      : id_(id),
+        self_(self),
+        start_(start),
+        in_effect_(self),
+        arrived_(self),
+        received_(start - 1),
+        applied_(start - 1) {}
 
   RegionId id() const { return id_; }
+  /// The first state that the neighbour publishes.
+  Step start() const { return start_; }
   bool alive() const { return alive_; }
 
   /// Keeps a batch until its turn. False when it is a copy of one already seen. Calls `arrived(*this)` for each batch
@@ -77,6 +85,7 @@ class Neighbour {
 
   RegionId id_;
   RegionId self_;
+  Step start_;
   PublishedAuras in_effect_, arrived_;
   bool alive_ = true;
   bool has_gathered_ = true;

@@ -52,6 +52,25 @@ TEST_F(Gate, WaitsForTheHandOffsOfKStepsAgo) {
   EXPECT_TRUE(intake->ready(6));
 }
 
+/// A region that listens only later may have had no reader yet when the words went out.
+TEST_F(Gate, OnlyRegionsThatPublishTheStateAreToSayAWordInIt) {
+  const Vicinity near{map, region(0), 5};
+  intake.emplace(settings, near, departures);
+  intake->listen_to(region(2), 10);
+  const auto say = [&](std::uint32_t from, Step stamp) {
+    AuraBatch word = batch(from, stamp);
+    word.word = 1;
+    receive(word);
+  };
+  EXPECT_FALSE(intake->all_have_said(9, 1));
+  say(1, 9);
+  EXPECT_TRUE(intake->all_have_said(9, 1));
+  say(1, 10);
+  EXPECT_FALSE(intake->all_have_said(10, 1));
+  say(2, 10);
+  EXPECT_TRUE(intake->all_have_said(10, 1));
+}
+
 TEST_F(Gate, ANewerHandOffThatIsUnderWayKeepsNobodyWaiting) {
   listen(SyncMode::kBounded, 2);
   receive_all_until(7);
