@@ -1,19 +1,46 @@
 #include "core/introductions.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/horizon.h"
 
 namespace aurasim::core {
 namespace {
 
-/// Regions within this distance of a body have to know of it by the time that an introduction takes effect.
+/// Regions within this distance of a body have to know of it by the time that an introduction takes effect. Where
+/// states are checked, bodies are believed to keep to their paths (InterestMatching::zone_of), and what falls comes no
+/// nearer to another region.
 double reach_m(const Aura& aura, const Path& path, double others_top_speed_m_s) {
   const AuraRules& rules = aura.rules();
   const double steps = path.age_steps + static_cast<double>(horizon::introduction(rules.lookahead));
   const double speed = std::max(path.speed_m_s, path.v_WB.norm());
-  return path.radius_m + aura.zone(speed, horizon::kMostHops, std::max(others_top_speed_m_s, speed), path.radius_m) +
-         steps * rules.step_s * (path.v_WB.norm() + rules.uncertainty * path.speed_m_s);
+  const bool keeps_to_path = rules.redo && aura.predicts();
+  const double along = keeps_to_path ? std::hypot(path.v_WB.x(), path.v_WB.y()) : path.v_WB.norm();
+  const double drift = along + rules.uncertainty * path.speed_m_s;
+  const double zone_speed = keeps_to_path ? drift / (1 + rules.uncertainty) : speed;
+  return path.radius_m +
+         aura.zone(zone_speed, horizon::kMostHops, std::max(others_top_speed_m_s, speed), path.radius_m) +
+         steps * rules.step_s * drift;
+}
+
+Rectangle hull(const Rectangle& a, const Rectangle& b) {
+  return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
+}
+
+/// Adds what a body of `host` at `p` may reach, if it may come to `territory`. One that is over it already may come to
+/// all of it, however slow it is: a blow that nobody expects may make it faster.
+void add_to(std::vector<HostsReach>& reaches, const Rectangle& territory, RegionId host, const Vec3& p,
+            double reach_m) {
+  if (territory.distance(p.x(), p.y()) > reach_m) return;
+  Rectangle reach{p.x() - reach_m, p.y() - reach_m, p.x() + reach_m, p.y() + reach_m};
+  if (territory.contains(p.x(), p.y())) reach = hull(reach, territory);
+  const auto known = std::ranges::find(reaches, host, &HostsReach::host);
+  if (known == reaches.end()) {
+    reaches.push_back({host, reach});
+  } else {
+    known->reach = hull(known->reach, reach);
+  }
 }
 
 void sort_out(std::vector<Introduction>& pairs) {
@@ -51,16 +78,16 @@ const std::vector<Introduction>& Introducer::look(const ForeignBodies& foreign, 
     const Vec3& p = body.path.pose.p_WB;
     const bool at_home = vicinity_.map.region(body.host).contains(p.x(), p.y());
     const double reach = reach_m(aura_, body.path, others_top_speed_m_s);
-    if (vicinity_.home().distance(p.x(), p.y()) <= reach) guests_.push_back(body.host);
+    add_to(guests_, vicinity_.home(), body.host, p, reach);
     if (at_home && reach <= vicinity_.neighbour_distance_m) continue;
     for (std::uint32_t q = 0; q < vicinity_.map.size(); ++q) {
       if (vicinity_.map.distance(RegionId{q}, p) <= reach) introduce(body.host, RegionId{q});
     }
   }
-  std::sort(guests_.begin(), guests_.end());
-  guests_.erase(std::unique(guests_.begin(), guests_.end()), guests_.end());
   for (std::size_t i = 0; i < guests_.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) introduce(guests_[i], guests_[j]);
+    for (std::size_t j = 0; j < i; ++j) {
+      if (guests_[i].reach.distance(guests_[j].reach) <= 0) introduce(guests_[i].host, guests_[j].host);
+    }
   }
   sort_out(found_);
   return found_;
@@ -68,23 +95,28 @@ const std::vector<Introduction>& Introducer::look(const ForeignBodies& foreign, 
 
 std::vector<RegionId> related_at_start(const Aura& aura, const RegionMap& map, double neighbour_distance_m,
                                        RegionId self, const Snapshot& scene, std::span<const RegionId> hosts) {
-  std::vector<std::vector<RegionId>> hosts_near(map.size());  // by region: hosts of the bodies near it
+  std::vector<Path> paths;
+  double top_speed_m_s = 0;
   for (std::size_t i = 0; i < hosts.size(); ++i) {
-    Path path = path_of(scene.bodies[i], scene.step, aura.clearance());
-    path.speed_m_s = aura.speed_of(scene.bodies[i]);
-    const double reach = reach_m(aura, path, aura.rules().top_speed_m_s);
+    paths.push_back(path_of(scene.bodies[i], scene.step, aura.clearance()));
+    paths.back().speed_m_s = aura.speed_of(scene.bodies[i]);
+    top_speed_m_s = std::max(top_speed_m_s, paths.back().speed_m_s);
+  }
+  std::vector<std::vector<HostsReach>> near(map.size());  // by region: who may come to it, its owner first
+  for (std::uint32_t q = 0; q < map.size(); ++q) near[q].push_back({RegionId{q}, map.region(RegionId{q})});
+  for (std::size_t i = 0; i < hosts.size(); ++i) {
+    const double reach = reach_m(aura, paths[i], top_speed_m_s);
     for (std::uint32_t q = 0; q < map.size(); ++q) {
-      if (map.distance(RegionId{q}, path.pose.p_WB) <= reach) hosts_near[q].push_back(hosts[i]);
+      add_to(near[q], map.region(RegionId{q}), hosts[i], paths[i].pose.p_WB, reach);
     }
   }
   std::vector<RegionId> related;
-  for (std::uint32_t q = 0; q < map.size(); ++q) {
-    std::vector<RegionId>& there = hosts_near[q];
-    there.push_back(RegionId{q});
-    if (std::find(there.begin(), there.end(), self) == there.end()) continue;
-    for (const RegionId other : there) {
-      if (other != self && map.region(self).distance(map.region(other)) > neighbour_distance_m)
-        related.push_back(other);
+  for (const std::vector<HostsReach>& there : near) {
+    const auto own = std::ranges::find(there, self, &HostsReach::host);
+    if (own == there.end()) continue;
+    for (const HostsReach& other : there) {
+      const bool is_near = map.region(self).distance(map.region(other.host)) <= neighbour_distance_m;
+      if (!is_near && own->reach.distance(other.reach) <= 0) related.push_back(other.host);
     }
   }
   std::sort(related.begin(), related.end());

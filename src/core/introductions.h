@@ -1,7 +1,7 @@
 // Listening follows bodies (docs/design.md, "Who listens to whom"). Regions near each other always listen to each
 // other. Where a body may come to a region that does not listen to its host, a node that listens to both introduces the
-// two. A node also introduces two hosts whose bodies are near its territory. Both listen to each other from an agreed
-// state on.
+// two. A node also introduces two hosts whose bodies may come together in its territory. Both listen to each other from
+// an agreed state on.
 #pragma once
 
 #include <span>
@@ -14,6 +14,12 @@
 #include "core/vicinity.h"
 
 namespace aurasim::core {
+
+/// Where those of a host's bodies that are near some region may come to before an introduction takes effect.
+struct HostsReach {
+  RegionId host{};
+  Rectangle reach;
+};
 
 class Introducer {
  public:
@@ -29,8 +35,8 @@ class Introducer {
 
   const Aura& aura_;
   const Vicinity& vicinity_;
-  bool all_are_near_;             ///< every region is near every other, so none has to be introduced
-  std::vector<RegionId> guests_;  ///< hosts of bodies near our territory
+  bool all_are_near_;               ///< every region is near every other, so none has to be introduced
+  std::vector<HostsReach> guests_;  ///< hosts of bodies near our territory
   std::vector<Introduction> found_;
 };
 

@@ -14,6 +14,7 @@
 #include "dds/random_id.h"
 #include "dds/rations.h"
 #include "messages/control_codec.h"
+#include "messages/status_period.h"
 
 namespace aurasim::dds {
 
@@ -27,8 +28,8 @@ constexpr std::size_t kMostRequests = 1U << 16U;
 constexpr std::size_t kMostWaiting = 64;
 constexpr auto kUntilKnown = std::chrono::seconds(3);
 constexpr auto kLongAgo = std::chrono::seconds(1);
-/// Longest time between two looks at the roster while nothing has come. Silence and deaths show by time alone.
-constexpr auto kLookEvery = std::chrono::milliseconds(20);
+/// Looks at the whole roster for each period of statuses. Silence shows by time alone.
+constexpr int kLooksInAPeriod = 5;
 
 struct HeardCommand {
   messages::RunCommand command;
@@ -57,7 +58,7 @@ struct ControlBus::Impl {
   void take_statuses();
   void note(messages::Status status, const Origin& origin);
   NodeRoster& look();
-  bool has_news();
+  bool is_time_to_look();
   std::string problem_with(const messages::RunCommand& command, const Origin& origin) const;
   void judge(HeardCommand heard, std::vector<messages::RunCommand>& commands);
   bool remember(std::uint64_t request, const Guid& sender);
@@ -134,21 +135,26 @@ void ControlBus::Impl::note(messages::Status fresh, const Origin& origin) {
   }
 }
 
-/// Looks at the roster if there is news, because a look costs time that grows with the number of nodes, and the loops
-/// of a process ask several times in each round.
+/// Looks at what is new of the roster: a look at all of it costs time that grows with the number of nodes, as does the
+/// number of statuses, and the loops of a process ask several times in each round.
 NodeRoster& ControlBus::Impl::look() {
   participant.progress();
   take_statuses();
-  if (has_news()) roster.look(status_reader.watch().writers());
+  if (is_time_to_look()) {
+    roster.look(status_reader.watch().writers());
+  } else if (roster.has_news()) {
+    roster.look_at_news(status_reader.watch().writers());
+  }
   return roster;
 }
 
-bool ControlBus::Impl::has_news() {
+/// True if processes have come or gone, or some time has passed.
+bool ControlBus::Impl::is_time_to_look() {
   const auto now = std::chrono::steady_clock::now();
   const std::uint64_t changes = status_reader.watch().changes();
-  if (!roster.has_news() && changes == seen_changes && now < next_look) return false;
+  if (changes == seen_changes && now < next_look) return false;
   seen_changes = changes;
-  next_look = now + kLookEvery;
+  next_look = now + messages::status_period(settings.region_count) / kLooksInAPeriod;
   return true;
 }
 

@@ -22,6 +22,8 @@ using core::value_of;
 namespace {
 
 constexpr auto kPatienceWithListeners = std::chrono::seconds(10);
+/// Time between two looks at who is silent, while nobody comes or goes. A small part of any lease.
+constexpr auto kLookAtPeersEvery = std::chrono::milliseconds(5);
 
 void count_sent(TopicCounters& counters, WriteResult result, std::size_t bytes) {
   if (result == WriteResult::kFailed) {
@@ -102,6 +104,7 @@ struct DdsTransport::Impl {
                 std::vector<core::Refusal>& refusals);
   template <class WireMessage>
   Link* sender_of(Reader& reader, const WireMessage& sample, const Origin& origin);
+  bool is_time_for_peers();
   void take_peer_changes(std::vector<core::PeerEvent>& peers);
   void send_aura(const core::AuraBatch& batch);
   void send_hand_off(const core::HandOff& hand_off);
@@ -117,6 +120,8 @@ struct DdsTransport::Impl {
   wire::Migration migration;
   wire::MigrationAck ack;
   TransportCounters counters;
+  std::uint64_t seen_changes = 0;  ///< of the watches of aura readers, at the last look at peers
+  std::chrono::steady_clock::time_point next_look_at_peers;
 };
 
 DdsTransport::Impl::Impl(Participant& participant_in, const TransportSettings& settings_in)
@@ -246,6 +251,17 @@ std::vector<std::string> DdsTransport::Impl::missing_neighbours(std::vector<Regi
   return texts;
 }
 
+/// True if writers have come or gone, or some time has passed: a look compares all links with all writers.
+bool DdsTransport::Impl::is_time_for_peers() {
+  const auto now = std::chrono::steady_clock::now();
+  std::uint64_t changes = 0;
+  for (const auto& reader : links.aura_readers()) changes += reader->watch().changes();
+  if (changes == seen_changes && now < next_look_at_peers) return false;
+  seen_changes = changes;
+  next_look_at_peers = now + kLookAtPeersEvery;
+  return true;
+}
+
 void DdsTransport::Impl::take_peer_changes(std::vector<core::PeerEvent>& peers) {
   for (const auto& link : links.all()) {
     const RemoteWriter writer = links.aura_writer_of(*link);
@@ -340,7 +356,7 @@ void DdsTransport::take(core::Inbox& inbox) {
   for (const auto& reader : impl_->links.aura_readers()) take_all(*reader, impl_->aura, inbox.auras, counters.aura);
   take_all(impl_->links.migrations(), impl_->migration, inbox.hand_offs, counters.migration);
   take_all(impl_->links.acks(), impl_->ack, inbox.acks, counters.migration_ack);
-  impl_->take_peer_changes(inbox.peers);
+  if (impl_->is_time_for_peers()) impl_->take_peer_changes(inbox.peers);
 }
 
 void DdsTransport::send(const core::Outbox& outbox) {

@@ -25,12 +25,13 @@ constexpr std::chrono::nanoseconds shortest_announcement_period(std::size_t node
 }
 
 /// Shortest heartbeat period of a writer, and shortest time before a reader that was matched first asks for what there
-/// is; 0: the profile decides. Only for topics that all nodes read: while one reader has not answered, each heartbeat
-/// asks all of them, and each answers; and a reader asks until its writer has matched it, and is answered each time.
-/// The newest status or map replaces all earlier ones, so these can wait. What a step waits for is asked for as the
-/// profile says.
+/// is; 0: the profile decides. While one reader has not answered, each heartbeat asks all of them, and each answers;
+/// and a reader asks until its writer has matched it, and is answered each time. The newest status or map replaces all
+/// earlier ones, so these can wait. Most heartbeats of auras are left out (rtps/heartbeat_limit.h), but each wakes a
+/// thread. What else a step waits for is asked for as the profile says.
 inline std::chrono::nanoseconds shortest_heartbeat(topics::TopicId topic, std::size_t nodes) {
   if (nodes < kManyNodes) return std::chrono::nanoseconds(0);
+  if (topic == topics::TopicId::kAura) return std::chrono::milliseconds(20);
   if (topic == topics::TopicId::kNodeStatus) return 4 * messages::status_period(nodes);  // each status asks, too
   if (topic == topics::TopicId::kRegionMap) return messages::status_period(nodes);
   const bool is_of_all = topics::at(topic).division == topics::Division::kNone;

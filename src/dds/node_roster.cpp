@@ -85,7 +85,7 @@ bool NodeRoster::has_room_for(RegionId region) const {
 
 void NodeRoster::note(messages::Status fresh, const Origin& origin) {
   if (!has_room_for(fresh.region)) return;
-  has_news_ = true;
+  fresh_.insert(fresh.region);
   std::vector<Received>& of_region = received_[fresh.region];
   auto found = std::ranges::find(of_region, origin.writer, &Received::writer);
   if (found == of_region.end()) {
@@ -100,16 +100,24 @@ void NodeRoster::note(messages::Status fresh, const Origin& origin) {
 }
 
 void NodeRoster::look(const std::vector<RemoteWriter>& writers) {
-  has_news_ = false;
-  for (auto& [region, of_region] : received_) {
-    for (Received& one : of_region) {
-      if (claimed_.contains(one.seen.status.process) && shows_no_life(one)) dead_.insert(one.seen.status.process);
-      one.seen.dead = dead_.contains(one.seen.status.process);
-      one.seen.lost = one.seen.dead || is_lost(one, find(writers, one.writer));
-    }
-    if (is_region(region)) choose_publisher(region, of_region);
-    std::erase_if(of_region, [&](const Received& one) { return one.seen.lost && one.writer != publishers_[region]; });
+  has_death_ = false;
+  fresh_.clear();
+  for (auto& [region, of_region] : received_) look_at(region, of_region, writers);
+}
+
+void NodeRoster::look_at_news(const std::vector<RemoteWriter>& writers) {
+  if (has_death_) return look(writers);
+  for (const RegionId region : std::exchange(fresh_, {})) look_at(region, received_.at(region), writers);
+}
+
+void NodeRoster::look_at(RegionId region, std::vector<Received>& of_region, const std::vector<RemoteWriter>& writers) {
+  for (Received& one : of_region) {
+    if (claimed_.contains(one.seen.status.process) && shows_no_life(one)) dead_.insert(one.seen.status.process);
+    one.seen.dead = dead_.contains(one.seen.status.process);
+    one.seen.lost = one.seen.dead || is_lost(one, find(writers, one.writer));
   }
+  if (is_region(region)) choose_publisher(region, of_region);
+  std::erase_if(of_region, [&](const Received& one) { return one.seen.lost && one.writer != publishers_[region]; });
 }
 
 void NodeRoster::choose_publisher(RegionId region, const std::vector<Received>& of_region) {
@@ -194,7 +202,7 @@ bool NodeRoster::receive_death(std::uint64_t process) {
     if (meant == of_region.end()) continue;
     if (settings_.stays_on_this_host && !shows_no_life(*meant)) return false;
     if (claimed_.size() < kMostClaims) claimed_.insert(process);
-    has_news_ = true;
+    has_death_ = true;
   }
   return true;
 }

@@ -35,10 +35,12 @@ class NodeRoster {
   /// Returns why `status` cannot be a node's status of itself. Empty: it can.
   std::string problem_with(const messages::Status& status, const Origin& origin) const;
   void note(messages::Status status, const Origin& origin);
-  /// True if a status or the report of a death has come since the last look.
-  bool has_news() const { return has_news_; }
   /// Updates which proofs of life have ended, and which status counts for each region.
   void look(const std::vector<RemoteWriter>& writers);
+  /// True if a status or the report of a death has come since the last look.
+  bool has_news() const { return has_death_ || !fresh_.empty(); }
+  /// Like look(), but only at regions of which statuses have come, if no death was reported.
+  void look_at_news(const std::vector<RemoteWriter>& writers);
 
   /// Statuses of this run's nodes, as of the last look().
   const std::map<core::RegionId, messages::SeenStatus>& statuses() const { return statuses_; }
@@ -49,7 +51,7 @@ class NodeRoster {
 
   void hold_for_dead(std::uint64_t process) {
     dead_.insert(process);
-    has_news_ = true;
+    has_death_ = true;
   }
   /// Handles a report that `process` has died, which is believed once it shows no life. Returns false when it shows
   /// some.
@@ -72,13 +74,15 @@ class NodeRoster {
   bool has_room_for(core::RegionId region) const;
   bool is_lost(const Received& one, const RemoteWriter* writer) const;
   bool shows_no_life(const Received& one) const;
+  void look_at(core::RegionId region, std::vector<Received>& of_region, const std::vector<RemoteWriter>& writers);
   void choose_publisher(core::RegionId region, const std::vector<Received>& of_region);
   bool is_of_the_run(const messages::Status& status, const Guid& writer) const;
   bool is_of_the_run(const Received& one) const { return is_of_the_run(one.seen.status, one.writer); }
 
   RosterSettings settings_;
   Speakers& speakers_;
-  bool has_news_ = false;
+  bool has_death_ = false;          ///< one was reported since the last look
+  std::set<core::RegionId> fresh_;  ///< regions of which statuses have come since the last look
   std::map<core::RegionId, std::vector<Received>> received_;  ///< processes in the order of their first samples
   std::map<core::RegionId, Guid> publishers_;
   std::map<core::RegionId, messages::SeenStatus> statuses_;

@@ -27,8 +27,8 @@ using eprosima::fastrtps::rtps::SenderResource;
 
 namespace {
 
-rtps::AnnouncementLimit::Peer peer_of(const SenderResource* socket, const Locator_t& destination) {
-  rtps::AnnouncementLimit::Peer peer;
+rtps::Peer peer_of(const SenderResource* socket, const Locator_t& destination) {
+  rtps::Peer peer;
   peer.socket = reinterpret_cast<std::uintptr_t>(socket);  // NOLINT: an id
   std::copy_n(&destination.address[0], peer.address.size(), peer.address.begin());
   peer.port = destination.port;
@@ -76,13 +76,18 @@ WireTransport::~WireTransport() = default;
 bool WireTransport::send(SenderResource* socket, const octet* bytes, std::uint32_t size, LocatorsIterator* begin,
                          LocatorsIterator* end, const std::chrono::steady_clock::time_point& time_out) {
   const std::span datagram(bytes, size);
-  descriptor_.wire.guard->note_sent(datagram);
-  const auto announcement = announcements_.is_limited() ? rtps::announcement_in(datagram) : std::nullopt;
-  if (!announcement) return send_to(socket, bytes, size, begin, end, time_out);
   const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  rtps::DatagramGuard& guard = *descriptor_.wire.guard;
+  guard.note_sent(datagram, now);
+  const auto heartbeat = rtps::heartbeat_in(datagram);
+  const auto announcement = announcements_.is_limited() ? rtps::announcement_in(datagram) : std::nullopt;
+  if (!heartbeat && !announcement) return send_to(socket, bytes, size, begin, end, time_out);
   std::vector<Locator_t> due;
   for (; *begin != *end; ++*begin) {
-    if (announcements_.allows(peer_of(socket, **begin), *announcement, now)) due.push_back(**begin);
+    const rtps::Peer peer = peer_of(socket, **begin);
+    const bool is_due =
+        heartbeat ? guard.allows(*heartbeat, peer, now) : announcements_.allows(peer, *announcement, now);
+    if (is_due) due.push_back(**begin);
   }
   if (due.empty()) return true;
   Locators first(due.cbegin()), last(due.cend());

@@ -41,7 +41,8 @@ class WireTransport final : public eprosima::fastdds::rtps::ChainingTransport {
   ~WireTransport() override;
 
   eprosima::fastdds::rtps::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
-  /// Sends through the delay line: only sent datagrams are impaired. Does not repeat announcements too often.
+  /// Sends through the delay line: only sent datagrams are impaired. Leaves out heartbeats and announcements that
+  /// nobody needs.
   bool send(eprosima::fastrtps::rtps::SenderResource* socket, const eprosima::fastrtps::rtps::octet* bytes,
             std::uint32_t size, eprosima::fastrtps::rtps::LocatorsIterator* begin,
             eprosima::fastrtps::rtps::LocatorsIterator* end,

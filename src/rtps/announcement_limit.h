@@ -3,14 +3,14 @@
 // peer that has just been given one needs no other; a new one is given it at once.
 #pragma once
 
-#include <array>
 #include <chrono>
-#include <compare>
 #include <cstdint>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <span>
+
+#include "rtps/peer.h"
 
 namespace aurasim::rtps {
 
@@ -22,14 +22,6 @@ std::optional<std::uint64_t> announcement_in(std::span<const std::uint8_t> datag
 class AnnouncementLimit {
  public:
   using Time = std::chrono::nanoseconds;  ///< time of any monotonic clock
-
-  /// Where a datagram is sent to, and by which socket.
-  struct Peer {
-    std::uintptr_t socket = 0;
-    std::array<std::uint8_t, 16> address{};
-    std::uint32_t port = 0;
-    auto operator<=>(const Peer&) const = default;
-  };
 
   /// `shortest`: time between two announcements to one peer. 0: no limit.
   explicit AnnouncementLimit(std::chrono::nanoseconds shortest) : shortest_(shortest) {}

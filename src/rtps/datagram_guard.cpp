@@ -3,12 +3,33 @@
 #include <algorithm>
 
 #include "rtps/datagram_check.h"
+#include "rtps/wire_cursor.h"
 
 namespace aurasim::rtps {
 
 namespace {
 
 constexpr std::size_t kMostAddresses = 256;
+
+/// Calls visit(writer, number, size) for each sample of a datagram that this process sends.
+template <class Visit>
+void for_each_sample(std::span<const std::uint8_t> datagram, Visit&& visit) {
+  constexpr std::uint8_t kData = 0x15;
+  std::size_t at = kHeaderBytes;
+  while (datagram.size() >= at + 4) {
+    const std::uint8_t id = datagram[at];
+    const bool little = (datagram[at + 1] & 1) != 0;
+    std::size_t length = WireCursor(datagram, at + 2, at + 4, little).u16();
+    at += 4;
+    if ((length == 0 && id == kData) || length > datagram.size() - at) length = datagram.size() - at;
+    WireCursor body(datagram, at, at + length, little);
+    at += length;
+    if (id != kData) continue;
+    body.skip(8);
+    const std::uint32_t writer = body.entity();
+    visit(writer, body.sequence_number(), static_cast<std::uint32_t>(length));
+  }
+}
 
 }  // namespace
 
@@ -89,6 +110,7 @@ bool DatagramGuard::is_of_shunned(const Findings& findings, const GuidPrefix& se
 void DatagramGuard::answer_requests(Findings& findings, Source source, Time now) {
   for (const Request& request : findings.requests) {
     if (own_ && request.destination != GuidPrefix{} && request.destination != *own_) continue;
+    if (request.wanted > 0) heartbeats_.note_loss(request.writer, now);
     const Repeats::Answer answer = repeats_.judge(request, now);
     if (answer == Repeats::Answer::kPass) continue;
     if (request.wanted > 0) refuse(Refusal::kRepeat, source);
@@ -115,9 +137,27 @@ void DatagramGuard::remove_writer_of_nodes(std::uint32_t writer) {
   repeats_.remove_writer_of_nodes(writer);
 }
 
-void DatagramGuard::note_sent(std::span<const std::uint8_t> bytes) {
+void DatagramGuard::note_sent(std::span<const std::uint8_t> bytes, Time now) {
   const std::lock_guard lock(mutex_);
-  repeats_.note_sent(bytes);
+  for_each_sample(bytes, [&](std::uint32_t writer, std::uint64_t number, std::uint32_t sample_B) {
+    repeats_.note_sent(writer, number, sample_B);
+    heartbeats_.note_sent(writer, number, now);
+  });
+}
+
+void DatagramGuard::add_steady_writer(std::uint32_t writer) {
+  const std::lock_guard lock(mutex_);
+  heartbeats_.add_writer(writer);
+}
+
+void DatagramGuard::remove_steady_writer(std::uint32_t writer) {
+  const std::lock_guard lock(mutex_);
+  heartbeats_.remove_writer(writer);
+}
+
+bool DatagramGuard::allows(const Heartbeat& heartbeat, const Peer& peer, Time now) {
+  const std::lock_guard lock(mutex_);
+  return heartbeats_.allows(heartbeat, peer, now);
 }
 
 std::vector<std::pair<GuidPrefix, Repeats::Answer>> DatagramGuard::take_new_askers() {

@@ -18,6 +18,7 @@
 #include "rtps/delivery.h"
 #include "rtps/discovery_fragments.h"
 #include "rtps/guard_report.h"
+#include "rtps/heartbeat_limit.h"
 #include "rtps/made_datagrams.h"
 #include "rtps/peer_book.h"
 #include "rtps/repeats.h"
@@ -65,7 +66,12 @@ class DatagramGuard {
   Admitted admit(std::span<std::uint8_t> bytes, Source source, Time now);
   Delivery& delivery() { return delivery_; }
   /// Takes note of a datagram that this process is about to send.
-  void note_sent(std::span<const std::uint8_t> bytes);
+  void note_sent(std::span<const std::uint8_t> bytes, Time now);
+  /// Registers a writer of this process that writes a sample for each state (heartbeat_limit.h).
+  void add_steady_writer(std::uint32_t writer);
+  void remove_steady_writer(std::uint32_t writer);
+  /// True if a heartbeat of this process is to be sent.
+  bool allows(const Heartbeat& heartbeat, const Peer& peer, Time now);
 
   GuardReport report() const;
   /// Returns the addresses from which something was refused for the first time since the last call.
@@ -88,6 +94,7 @@ class DatagramGuard {
   PeerBook peers_;
   DiscoveryFragments fragments_;
   Repeats repeats_;
+  HeartbeatLimit heartbeats_;
   Repeats::Prefixes shunned_;
   GuardReport::Counts refused_{};
   std::uint64_t passed_ = 0;

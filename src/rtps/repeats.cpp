@@ -2,27 +2,7 @@
 
 #include <algorithm>
 
-#include "rtps/wire_cursor.h"
-
 namespace aurasim::rtps {
-
-void Repeats::note_sent(std::span<const std::uint8_t> datagram) {
-  constexpr std::uint8_t kData = 0x15;
-  std::size_t at = kHeaderBytes;
-  while (datagram.size() >= at + 4) {
-    const std::uint8_t id = datagram[at];
-    const bool little = (datagram[at + 1] & 1) != 0;
-    std::size_t length = WireCursor(datagram, at + 2, at + 4, little).u16();
-    at += 4;
-    if ((length == 0 && id == kData) || length > datagram.size() - at) length = datagram.size() - at;
-    WireCursor body(datagram, at, at + length, little);
-    at += length;
-    if (id != kData) continue;
-    body.skip(8);
-    const std::uint32_t writer = body.entity();
-    note_sent(writer, body.sequence_number(), static_cast<std::uint32_t>(length));
-  }
-}
 
 void Repeats::note_sent(std::uint32_t writer, std::uint64_t number, std::uint32_t sample_B) {
   if (sent_.size() >= kMostWriters) sent_.clear();

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -42,8 +41,8 @@ class Repeats {
   void add_writer_of_nodes(std::uint32_t writer) { of_nodes_.insert(writer); }
   void remove_writer_of_nodes(std::uint32_t writer) { of_nodes_.erase(writer); }
 
-  /// Learns from a datagram that this process sends how large its samples are, and how many there have been.
-  void note_sent(std::span<const std::uint8_t> datagram);
+  /// Takes note of a sample that this process sends.
+  void note_sent(std::uint32_t writer, std::uint64_t number, std::uint32_t sample_B);
 
   enum class Answer : std::uint8_t {
     kPass,
@@ -70,7 +69,6 @@ class Repeats {
     std::uint32_t sample_B = 0;  ///< recent maximum: the weight of a sample 100 samples ago is small
   };
 
-  void note_sent(std::uint32_t writer, std::uint64_t number, std::uint32_t sample_B);
   double price_of(const Request& request) const;
   bool is_too_late(Asker& asker, const Request& request, Time now) const;
   void tell(bool& is_said, const Request& request, Answer answer);

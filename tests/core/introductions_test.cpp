@@ -20,15 +20,15 @@ constexpr Step kIntroduced = 100;
 /// Four columns of 10 m around the origin; we are the second, from -10 to 0, and hear the two beside us.
 class TheOwnerOfAPlace : public ::testing::Test {
  protected:
-  void add(RegionId host, double x, double v_x) {
+  void add(RegionId host, double x, double v_x, double v_z = 0) {
     AuraRecord aura;
     aura.id = BodyId{next_id_++};
     aura.host = host;
     aura.prototype = ball_;
     aura.stamp = kIntroduced - 1;
     aura.pose.p_WB = {x, 0, 0};
-    aura.v_WB = {v_x, 0, 0};
-    aura.speed_m_s = std::abs(v_x) + 0.1;
+    aura.v_WB = {v_x, 0, v_z};
+    aura.speed_m_s = aura.v_WB.norm() + 0.1;
     bodies_.add(aura, kIntroduced - 1, kIntroduced, *aura_);
   }
   const std::vector<Introduction>& look() {
@@ -61,6 +61,32 @@ TEST_F(TheOwnerOfAPlace, IntroducesTwoHostsWhoseBodiesAreItsGuests) {
   add(RegionId{0}, -8, 0);
   add(RegionId{2}, -2, 0);
   EXPECT_THAT(look(), ElementsAre(Introduction{RegionId{0}, RegionId{2}}));
+}
+
+TEST_F(TheOwnerOfAPlace, IntroducesTwoHostsWhoseBodiesMayMeetInIt) {
+  add(RegionId{0}, -10.2, 6);
+  EXPECT_THAT(look(), IsEmpty());
+  add(RegionId{2}, 0.2, -6);
+  EXPECT_THAT(look(), ElementsAre(Introduction{RegionId{0}, RegionId{2}}));
+}
+
+TEST_F(TheOwnerOfAPlace, LeavesTwoHostsAloneWhoseBodiesAreBesideIt) {
+  add(RegionId{0}, -10.2, 0);
+  add(RegionId{2}, 0.2, 0);
+  EXPECT_THAT(look(), IsEmpty());
+}
+
+/// Where states are checked a body is believed to fall straight.
+TEST_F(TheOwnerOfAPlace, LooksAcrossAndNotDown) {
+  add(RegionId{0}, -10.5, 0, -12);
+  add(RegionId{2}, 0.2, 0);
+  EXPECT_THAT(look(), ElementsAre(Introduction{RegionId{0}, RegionId{2}}));
+  AuraRules checked;
+  checked.redo = true;
+  checked.uncertainty = 0.1;
+  aura_ = make_aura(checked, shapes_);
+  Introducer introducer(*aura_, vicinity_);
+  EXPECT_THAT(introducer.look(bodies_, 1), IsEmpty());
 }
 
 TEST_F(TheOwnerOfAPlace, IntroducesNobodyWhomItDoesNotHear) {

@@ -39,7 +39,7 @@ TEST(AnAnnouncement, ThatAParticipantLeavesIsNone) {
 
 class AnAnnouncementLimit : public ::testing::Test {
  protected:
-  static AnnouncementLimit::Peer peer(std::uint32_t port) { return {1, {127, 0, 0, 1}, port}; }
+  static Peer peer(std::uint32_t port) { return {1, {127, 0, 0, 1}, port}; }
   AnnouncementLimit limit_{100ms};
 };
 
@@ -72,7 +72,8 @@ TEST(ManyNodes, AreTenAndMore) {
   EXPECT_FALSE(dds::is_renewed_sparsely(64, true)) << "silence may be a death";
   EXPECT_TRUE(dds::is_renewed_sparsely(64, false));
   EXPECT_EQ(shortest_heartbeat(TopicId::kRunControl, 64), 100ms);
-  for (const TopicId topic : {TopicId::kAura, TopicId::kMigration, TopicId::kMigrationAck, TopicId::kSeam}) {
+  EXPECT_EQ(shortest_heartbeat(TopicId::kAura, 64), 20ms);
+  for (const TopicId topic : {TopicId::kMigration, TopicId::kMigrationAck, TopicId::kSeam}) {
     EXPECT_EQ(shortest_heartbeat(topic, 64), 0ns) << "a step waits for it";
   }
 }

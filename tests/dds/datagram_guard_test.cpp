@@ -198,7 +198,7 @@ class RepeatsForStrangers : public Guard {
   RepeatsForStrangers() {
     guard_.set_nodes({prefix_of(kNode)});
     for (std::uint64_t number = 1; number <= kLast; ++number) {
-      guard_.note_sent(datagram({heartbeat(1, number), data(kWriter, number, Bytes(kSample_B - 20))}));
+      guard_.note_sent(datagram({heartbeat(1, number), data(kWriter, number, Bytes(kSample_B - 20))}), now_);
     }
   }
   /// What Fast DDS is shown of it; nothing: padding.
@@ -285,7 +285,7 @@ TEST_F(RepeatsForStrangers, AreEnoughForAViewerOnABadNetwork) {
 /// A picture of 20 MB in parts of 1200 bytes, 10% of them lost, and asked for five times.
 TEST_F(RepeatsForStrangers, AreEnoughForASpareThatComesLate) {
   constexpr std::uint32_t kOfParts = kWriter + 0x100, kParts = (20U << 20) / 1200;
-  guard_.note_sent(datagram({data(kOfParts, kParts, Bytes(1200))}));
+  guard_.note_sent(datagram({data(kOfParts, kParts, Bytes(1200))}), now_);
   for (std::uint32_t i = 0; i < 5 * kParts / 10 / 8; ++i) {
     const auto shown = admit(kViewer, ack_nack(1, 8, kOfParts));
     ASSERT_TRUE(shown) << i;

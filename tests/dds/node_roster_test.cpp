@@ -22,12 +22,14 @@ class ARoster : public ::testing::Test {
     status.process = process;
     roster_.note(status, {writer_of(process), {}});
   }
-  void look() {
+  void look() { roster_.look({live_writer(1), live_writer(2)}); }
+  void look_at_news() { roster_.look_at_news({live_writer(1), live_writer(2)}); }
+  static RemoteWriter live_writer(unsigned char process) {
     RemoteWriter writer;
-    writer.guid = writer_of(1);
-    writer.order = 1;
+    writer.guid = writer_of(process);
+    writer.order = process;
     writer.alive = true;
-    roster_.look({writer});
+    return writer;
   }
   static RosterSettings settings() {
     RosterSettings settings;
@@ -46,6 +48,30 @@ TEST_F(ARoster, HasNewsOnceAStatusHasCome) {
   look();
   EXPECT_FALSE(roster_.has_news());
   EXPECT_EQ(roster_.statuses().size(), 1U);
+}
+
+TEST_F(ARoster, LooksOnlyAtRegionsWithNews) {
+  receive_status(2, 1);
+  receive_status(3, 3);
+  look_at_news();
+  EXPECT_FALSE(roster_.has_news());
+  EXPECT_FALSE(roster_.statuses().at(RegionId{2}).lost);
+  EXPECT_TRUE(roster_.statuses().at(RegionId{3}).lost) << "nobody has such a writer";
+  receive_status(1, 2);
+  roster_.look_at_news({live_writer(2)});
+  EXPECT_FALSE(roster_.statuses().at(RegionId{1}).lost);
+  EXPECT_FALSE(roster_.statuses().at(RegionId{2}).lost) << "it was not looked at";
+  roster_.look({live_writer(2)});
+  EXPECT_TRUE(roster_.statuses().at(RegionId{2}).lost);
+}
+
+TEST_F(ARoster, LooksAtAllAfterADeath) {
+  receive_status(2, 1);
+  look();
+  receive_status(1, 2);
+  roster_.hold_for_dead(1);
+  look_at_news();
+  EXPECT_TRUE(roster_.statuses().at(RegionId{2}).dead);
 }
 
 TEST_F(ARoster, HasNewsOfADeath) {
