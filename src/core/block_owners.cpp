@@ -11,6 +11,8 @@ namespace {
 
 /// A body of usual speed goes no farther in a step, gaps of contacts included, m.
 constexpr double kUsualWay_m = 0.4;
+/// Between the interior of a region and the surroundings of others, m. More than rounding.
+constexpr double kApart_m = 0.001;
 
 /// The first edge of blocks from which on their centres are at `x` or beyond.
 double edge_at(double x, double side_m) { return std::isfinite(x) ? std::ceil(x / side_m - 0.5) * side_m : x; }
@@ -33,6 +35,7 @@ BlockOwners::BlockOwners(const RegionMap& map, double side_m, double reach_m, do
     }
     territories_.push_back(grown(blocks, reach_m));
     surroundings_.push_back(grown(territories_.back(), farther_m));
+    interiors_.push_back(grown(blocks, -reach_m - farther_m - kApart_m));
   }
 }
 

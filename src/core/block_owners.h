@@ -16,18 +16,23 @@ class BlockOwners {
 
   std::size_t size() const { return territories_.size(); }
   RegionId owner(const Block& block) const { return map_.owner(side_m_ * (block.x + 0.5), side_m_ * (block.y + 0.5)); }
+  bool owns(RegionId id, const Block& block) const {
+    return map_.region(id).contains(side_m_ * (block.x + 0.5), side_m_ * (block.y + 0.5));
+  }
   /// Where bodies of the region usually are. Bodies that extend beyond it are far.
   const Rectangle& territory(RegionId id) const { return territories_.at(value_of(id)); }
   /// The area that bodies of the region do not reach beyond in the next step. Where one may, its host says so before
   /// (core/seam_partners.h).
   const Rectangle& surroundings(RegionId id) const { return surroundings_.at(value_of(id)); }
+  /// The part of a region that no other region's surroundings come near. Empty (x0 > x1 or y0 > y1) in a small one.
+  const Rectangle& interior(RegionId id) const { return interiors_.at(value_of(id)); }
   /// Do the surroundings of two regions overlap?
   bool are_near(RegionId a, RegionId b) const;
 
  private:
   RegionMap map_;
   double side_m_;
-  std::vector<Rectangle> territories_, surroundings_;
+  std::vector<Rectangle> territories_, surroundings_, interiors_;
 };
 
 /// How far bodies of a scene with these bounding radii usually extend beyond their blocks, m. Larger and faster ones

@@ -27,12 +27,12 @@ core::BlockOwners block_owners(const core::RegionMap& map, const core::Scene& sc
     radii_m.push_back(core::bounding_radius(scene.shapes[kind.shape].shape));
   }
   return {map, settings.block_m, core::usual_reach_m(radii_m, settings.block_m),
-          2 * way_ahead_m(scene, settings, settings.top_speed_m_s)};
+          2 * way_ahead_m(scene.gravity.norm(), settings, settings.top_speed_m_s)};
 }
 
-double way_ahead_m(const core::Scene& scene, const Settings& settings, double speed_m_s) {
+double way_ahead_m(double gravity_m_s2, const Settings& settings, double speed_m_s) {
   const double top_m_s = std::max(speed_m_s, settings.top_speed_m_s);
-  return kReachSlack_m + settings.step_s * (top_m_s + settings.step_s / 2 * scene.gravity.norm());
+  return kReachSlack_m + settings.step_s * (top_m_s + settings.step_s / 2 * gravity_m_s2);
 }
 
 }  // namespace aurasim::physics

@@ -47,6 +47,6 @@ inline constexpr double kReachSlack_m = 0.05;
 
 /// How far a body of this speed gets in a step at most, m. Orders and setpoints may make it as fast as
 /// Settings::top_speed_m_s before the step.
-double way_ahead_m(const core::Scene& scene, const Settings& settings, double speed_m_s);
+double way_ahead_m(double gravity_m_s2, const Settings& settings, double speed_m_s);
 
 }  // namespace aurasim::physics

@@ -165,9 +165,7 @@ const std::vector<Collision>& RegionWorld::collisions() const { return impl_->co
 
 void RegionWorld::couple(const Coupling& coupling) { impl_->simulation.couple(coupling); }
 
-std::vector<core::Introduction> RegionWorld::introductions_ahead() const {
-  return impl_->simulation.introductions_ahead();
-}
+std::vector<core::Introduction> RegionWorld::introductions_ahead() { return impl_->simulation.introductions_ahead(); }
 
 const std::vector<Moved>& RegionWorld::arrived() const { return impl_->simulation.arrived(); }
 const std::vector<Moved>& RegionWorld::left() const { return impl_->simulation.left(); }

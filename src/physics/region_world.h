@@ -126,7 +126,7 @@ class RegionWorld {
   void couple(const Coupling& coupling);
   /// Where regions are coupled: the pairs of regions for core::SeamPartners that the next step needs because of bodies
   /// that are hosted here. Ascending. Orders and setpoints of the next step change nothing about it.
-  std::vector<core::Introduction> introductions_ahead() const;
+  std::vector<core::Introduction> introductions_ahead();
   /// Bodies that came in the last step, and bodies that left in it. Ascending by id. Those that came have their new
   /// epochs.
   const std::vector<Moved>& arrived() const;

@@ -26,6 +26,7 @@
 #include "physics/shapes.h"
 #include "physics/state_notes.h"
 #include "physics/timeline.h"
+#include "physics/watched_bodies.h"
 
 namespace aurasim::physics {
 
@@ -70,7 +71,7 @@ class Simulation {
   /// See RegionWorld::couple().
   void couple(const Coupling& coupling);
   /// See RegionWorld::introductions_ahead().
-  std::vector<core::Introduction> introductions_ahead() const;
+  std::vector<core::Introduction> introductions_ahead();
   const std::vector<Moved>& arrived() const { return arrived_; }
   const std::vector<Moved>& left() const { return left_; }
   void watch_contacts(bool wanted) { world_.contact_impulses().want(wanted); }
@@ -99,6 +100,7 @@ class Simulation {
   void wake_beside(core::BodyId id);
   // Coupled regions:
   void meet_neighbours();
+  bool is_to_be_watched(const HostedBody& body) const;
   void meet_far();
   bool may_be_in_chains(const HostedBody& body, double way_m) const;
   void find_reached(const HostedBody& body, double way_m, std::vector<core::RegionId>& reached) const;
@@ -116,7 +118,11 @@ class Simulation {
   void restore_later(const core::ClusterState& cluster, std::span<const std::uint32_t> records);
   void restore_late_contacts();
   void send_guests_home();
-  void leave_out_guests();
+  void find_shown();
+  std::uint32_t shown_at(std::size_t place) const {
+    return shown_at_.empty() ? static_cast<std::uint32_t>(place) : shown_at_[place];
+  }
+  void leave_out_guests(std::vector<core::Contact>& pairs) const;
   bool is_for_us_to_copy(const btPersistentManifold& manifold) const;
   void drop_guests(std::span<const core::BodyId> ids);
   void show_statics(core::Step n);
@@ -212,7 +218,8 @@ class Simulation {
   std::vector<const btPersistentManifold*> found_manifolds_;
   std::unique_ptr<Coupling> coupling_;  ///< null: this world is not coupled with others
   std::vector<core::BodyId> broken_;    ///< bodies that broke down in the present state
-  std::uint64_t meeting_ = 0;           ///< number of the last meet_neighbours()
+  WatchedBodies watched_;
+  std::uint64_t meeting_ = 0;  ///< number of the last meet_neighbours()
   ParcelWriter parcel_;
   std::vector<Moved> arrived_, left_;
   core::ClusterState late_contacts_;  ///< contacts with bodies of other regions that are not here yet
@@ -230,6 +237,8 @@ class Simulation {
   std::vector<core::BodyId> kicked_;           ///< bodies of the snapshot with a coming kick, or not yet born
   bool snapshot_is_fresh_ = false;
   core::Snapshot snapshot_;
+  /// By place in the table: place in the snapshot, which has no guests. Empty where regions are not coupled.
+  std::vector<std::uint32_t> shown_at_;
   bool records_are_fresh_ = false;
   std::vector<core::BodyRecord> records_;
   std::vector<core::Contact> unsorted_contacts_;

@@ -67,8 +67,9 @@ void Simulation::copy_all(core::ChangedState& copy) {
 void Simulation::copy_changes(core::ChangedState& copy) {
   copy.before = shared_copy_;
   copy.now.bodies.clear();
-  notes_.for_copy.for_each(table_,
-                           [&](const HostedBody& body, std::size_t) { copy.now.bodies.push_back(body.record()); });
+  notes_.for_copy.for_each(table_, [&](const HostedBody& body, std::size_t) {
+    if (!is_guest(*body.rigid)) copy.now.bodies.push_back(body.record());
+  });
   std::ranges::copy(notes_.for_copy.ids(), std::back_inserter(copy.replaced));
   std::ranges::copy(notes_.parted.ids(), std::back_inserter(copy.parted));
   copied_manifolds_.clear();
@@ -79,6 +80,7 @@ void Simulation::copy_changes(core::ChangedState& copy) {
     found_manifolds_.clear();
     world_.add_manifolds(*a, *b, found_manifolds_);
     for (const btPersistentManifold* manifold : found_manifolds_) {
+      if (coupling_ != nullptr && !is_for_us_to_copy(*manifold)) continue;
       copied_manifolds_.push_back({ref_of(*manifold->getBody0()), ref_of(*manifold->getBody1()), manifold});
     }
   }

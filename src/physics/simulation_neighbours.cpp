@@ -5,7 +5,6 @@
 // may touch are both known to the host of one of them, unless both are far from home. A body that extends beyond the
 // territory of its host is far. Whoever meets a far body there answers its host with all that the body may touch.
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <string>
 #include <utility>
@@ -29,6 +28,7 @@ bool overlap(const Bounds& a, const Bounds& b) { return TestAabbAgainstAabb2(a.l
 void Simulation::couple(const Coupling& coupling) {
   coupling_ = std::make_unique<Coupling>(coupling);
   world_.couple(coupling);
+  notes_.for_borders.note_all();
 }
 
 /// Bounds of what a body may touch in the next step.
@@ -55,7 +55,9 @@ Visit Simulation::visit_of(const HostedBody& body) const {
 /// The region that hosts a body in the next step.
 core::RegionId Simulation::host_of(const HostedBody& body) const {
   const BodyPlace& place = place_of(*body.rigid);
-  return place.is_guest ? place.host : coupling_->owners->owner(place.block);
+  if (place.is_guest) return place.host;
+  const core::RegionId self = coupling_->self;
+  return coupling_->owners->owns(self, place.block) ? self : coupling_->owners->owner(place.block);
 }
 
 void Simulation::meet_neighbours() {
@@ -66,8 +68,10 @@ void Simulation::meet_neighbours() {
   left_.clear();
   std::map<core::RegionId, std::vector<core::BodyId>> leaving;
   std::vector<Visit> guests;  // of this region
-  for (const HostedBody& body : table_.bodies()) {
-    if (!body.born || is_guest(*body.rigid)) continue;
+  watched_.add(notes_.for_borders, table_);
+  watched_.keep(table_, [this](const HostedBody& body) { return is_to_be_watched(body); });
+  watched_.for_each(table_, [&](const HostedBody& body) {
+    if (is_guest(*body.rigid)) return;
     const core::RegionId host = host_of(body);
     if (host != coupling_->self) {
       expect_to_meet(*coupling_, host);
@@ -77,11 +81,12 @@ void Simulation::meet_neighbours() {
       halos[host].arrivals.push_back(guests.back());
     }
     const Bounds reach = reach_of(*body.rigid);
+    if (host == coupling_->self && is_within(reach, coupling_->owners->interior(host))) return;
     for (auto& [peer, halo] : halos) {
       if (peer != host && overlap(reach, coupling_->owners->territory(peer))) halo.guests.push_back(visit_of(body));
     }
     check_partners(reach);
-  }
+  });
   std::vector<std::span<const core::BodyId>> clusters;
   for (const auto& [host, ids] : leaving) clusters.emplace_back(ids);
   std::vector<core::ClusterState> left = hand_over(clusters);
@@ -109,7 +114,6 @@ void Simulation::meet_neighbours() {
   meet_far();
   restore_late_contacts();
   send_guests_home();
-  note_all();
 }
 
 /// Throws std::logic_error unless this region exchanges parcels with all regions whose territory a body may reach.
@@ -137,6 +141,7 @@ void Simulation::restore_later(const core::ClusterState& cluster, std::span<cons
 void Simulation::restore_late_contacts() {
   const core::ClusterState late = std::exchange(late_contacts_, {});
   if (late.manifolds.empty()) return;
+  notes_.give_up_copy();
   restore_contacts(late);
   late_contacts_ = {};  // of bodies that are not near any more
 }
@@ -150,12 +155,13 @@ void Simulation::meet_far() {
   };
   const core::BlockOwners& owners = *coupling_->owners;
   std::vector<Far> far;
-  for (const HostedBody& body : table_.bodies()) {
-    if (!body.born || (is_guest(*body.rigid) && place_of(*body.rigid).met != meeting_)) continue;
+  watched_.add(notes_.for_borders, table_);
+  watched_.for_each(table_, [&](const HostedBody& body) {
+    if (!body.born || (is_guest(*body.rigid) && place_of(*body.rigid).met != meeting_)) return;
     const core::RegionId host = is_guest(*body.rigid) ? place_of(*body.rigid).host : coupling_->self;
     const Bounds reach = reach_of(*body.rigid);
     if (!is_within(reach, owners.territory(host))) far.push_back({body.id, host, reach});
-  }
+  });
   std::map<core::RegionId, Halo> answers;
   std::vector<core::RegionId> expected;
   for (const Far& one : far) {
@@ -208,6 +214,7 @@ Halo Simulation::fetch(core::RegionId from) {
 /// Removes bodies that another region hosts from now on.
 std::vector<core::ClusterState> Simulation::hand_over(std::span<const std::span<const core::BodyId>> clusters) {
   if (clusters.empty()) return {};
+  notes_.give_up_copy();
   std::vector<core::ClusterState> left = copy_whole(clusters);
   for (const std::span<const core::BodyId> cluster : clusters) {
     for (const core::BodyId id : cluster) {
@@ -224,6 +231,7 @@ std::vector<core::ClusterState> Simulation::hand_over(std::span<const std::span<
 /// Adds bodies that this region hosts from now on, with their contacts.
 void Simulation::take_over(const core::ClusterState& cluster, std::span<const Visit> visits) {
   if (cluster.bodies.empty()) return;
+  notes_.give_up_copy();
   std::vector<core::BodyId> known;
   for (const core::BodyRecord& body : cluster.bodies) {
     const HostedBody* const here = table_.find(body.id);
@@ -264,6 +272,7 @@ void Simulation::take_guests(std::vector<Visit>& visits) {
     world_.move(*body->rigid);
   }
   if (!arrivals.empty()) {
+    notes_.give_up_copy();
     table_.insert(std::move(arrivals));
     next_birth_ = std::min(next_birth_, step_);
     insert_born();
@@ -287,14 +296,15 @@ void Simulation::part_from(core::BodyId id) {
 /// Removes the guests that no longer come near.
 void Simulation::send_guests_home() {
   std::vector<core::BodyId> gone;
-  for (const HostedBody& body : table_.bodies()) {
+  watched_.for_each(table_, [&](const HostedBody& body) {
     if (is_guest(*body.rigid) && place_of(*body.rigid).met != meeting_) gone.push_back(body.id);
-  }
+  });
   drop_guests(gone);
 }
 
 void Simulation::drop_guests(std::span<const core::BodyId> ids) {
   if (ids.empty()) return;
+  notes_.give_up_copy();  // which contacts other bodies still have with them is not known
   std::vector<bool> leaves(table_.size());
   std::vector<btRigidBody*> gone;
   for (const core::BodyId id : ids) {
@@ -304,30 +314,7 @@ void Simulation::drop_guests(std::span<const core::BodyId> ids) {
     std::erase_if(pushed_, [&](const Push& push) { return push.body == body->rigid.get(); });
   }
   world_.remove(gone);
-  table_.erase(leaves);
-}
-
-/// Takes guests and their contacts out of the snapshot.
-void Simulation::leave_out_guests() {
-  constexpr std::uint32_t kOut = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint32_t> places;
-  std::uint32_t next = 0;
-  for (const HostedBody& body : table_.bodies()) places.push_back(is_guest(*body.rigid) ? kOut : next++);
-  if (next == places.size()) return;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    if (places[i] != kOut) snapshot_.bodies[places[i]] = snapshot_.bodies[i];
-  }
-  snapshot_.bodies.resize(next);
-  snapshot_.born = snapshot_.awake = 0;
-  for (const core::BodyState& body : snapshot_.bodies) {
-    if (body.birth > step_) continue;
-    ++snapshot_.born;
-    snapshot_.awake += body.awake ? 1 : 0;
-  }
-  for (std::vector<core::Contact>* const pairs : {&snapshot_.contacts, &snapshot_.joints}) {
-    for (core::Contact& pair : *pairs) pair = {places[pair.a], places[pair.b]};
-    std::erase_if(*pairs, [](const core::Contact& pair) { return pair.a == kOut || pair.b == kOut; });
-  }
+  erase(leaves);
 }
 
 }  // namespace aurasim::physics

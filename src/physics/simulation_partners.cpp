@@ -38,7 +38,20 @@ void Simulation::find_reached(const HostedBody& body, double way_m, std::vector<
   }
 }
 
-std::vector<core::Introduction> Simulation::introductions_ahead() const {
+/// Does a region have to look at the body in each step? A sleeper of its own inside it cannot reach anybody else's
+/// surroundings before it is noted as changed.
+bool Simulation::is_to_be_watched(const HostedBody& body) const {
+  if (!body.born) return false;  // it is noted when it is born
+  if (body.rigid->isActive() || is_guest(*body.rigid) || host_of(body) != coupling_->self) return true;
+  const double speed_m_s = static_cast<double>(body.rigid->getLinearVelocity().length());
+  const double way_m = 2 * way_ahead_m(scene_->gravity.norm(), settings_, speed_m_s);
+  const btVector3& p_WB = body.rigid->getWorldTransform().getOrigin();
+  Bounds reach = Bounds{p_WB, p_WB}.grown(scalar(place_of(*body.rigid).radius_m));
+  reach.add(bounds_of(*body.rigid));
+  return !is_within(reach.grown(scalar(way_m)), coupling_->owners->interior(coupling_->self));
+}
+
+std::vector<core::Introduction> Simulation::introductions_ahead() {
   std::vector<core::Introduction> pairs;
   if (coupling_ == nullptr) return pairs;
   const core::RegionId self = coupling_->self;
@@ -49,21 +62,25 @@ std::vector<core::Introduction> Simulation::introductions_ahead() const {
   if (!broken_.empty()) {  // whoever had one of them as a guest has to know
     for (std::uint32_t i = 0; i < owners.size(); ++i) introduce(core::RegionId{i});
   }
+  const double gravity_m_s2 = scene_->gravity.norm();
   std::vector<core::RegionId> reached;
-  for (const HostedBody& body : table_.bodies()) {
-    if (!body.born || is_guest(*body.rigid)) continue;
+  watched_.add(notes_.for_borders, table_);
+  watched_.for_each(table_, [&](const HostedBody& body) {
+    if (!body.born || is_guest(*body.rigid)) return;
     const btVector3& p_WB = body.rigid->getWorldTransform().getOrigin();
-    const double way_m = way_ahead_m(*scene_, settings_, static_cast<double>(body.rigid->getLinearVelocity().length()));
+    const double way_m =
+        way_ahead_m(gravity_m_s2, settings_, static_cast<double>(body.rigid->getLinearVelocity().length()));
     const Bounds around = Bounds{p_WB, p_WB}.grown(scalar(place_of(*body.rigid).radius_m + 2 * way_m));
     const core::RegionId host = host_of(body);
+    if (host == self && is_within(around, owners.interior(self))) return;
     const bool is_usual = is_within(around, owners.surroundings(host)) && !may_be_in_chains(body, way_m);
-    if (host == self && is_usual) continue;
+    if (host == self && is_usual) return;
     reached.clear();
     find_reached(body, way_m, reached);
     const auto is_near = [&](core::RegionId region) { return owners.are_near(self, region); };
-    if (is_usual && std::ranges::all_of(reached, is_near)) continue;
+    if (is_usual && std::ranges::all_of(reached, is_near)) return;
     std::ranges::for_each(reached, introduce);
-  }
+  });
   core::keep_one_of_each(pairs);
   return pairs;
 }

@@ -1,6 +1,7 @@
 // What a simulation shows of its bodies: snapshots and records. Only bodies that have changed are looked at anew.
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <tuple>
 
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
@@ -12,6 +13,9 @@
 
 namespace aurasim::physics {
 namespace {
+
+/// In place of the place of a guest.
+constexpr std::uint32_t kNotShown = std::numeric_limits<std::uint32_t>::max();
 
 bool before(const core::Contact& x, const core::Contact& y) { return std::tie(x.a, x.b) < std::tie(y.a, y.b); }
 bool same(const core::Contact& x, const core::Contact& y) { return x.a == y.a && x.b == y.b; }
@@ -76,7 +80,7 @@ const core::Snapshot& Simulation::snapshot() {
   for (const std::uint32_t index : coming_statics) note_near(bounds_of(*statics_[index]));
   for (const Shove& shove : shoves) note_near(shove.where);
   if (!shoves.empty() && !changed.all()) {  // bodies that move may come to where a static pushes
-    for (const std::uint32_t place : snapshot_.changed) changed.note(table_[place].id);
+    for (const std::uint32_t shown : snapshot_.changed) changed.note(snapshot_.bodies[shown].id);
   }
 
   snapshot_.step = step_;
@@ -87,13 +91,16 @@ const core::Snapshot& Simulation::snapshot() {
   kicked_.clear();
   if (!snapshot_.goes_on) {
     snapshot_.born = snapshot_.awake = 0;
-    snapshot_.bodies.assign(table_.size(), {});
+    snapshot_.bodies.clear();
+    find_shown();
   }
   changed.for_each(table_, [&](const HostedBody& body, std::size_t place) {
+    const std::uint32_t shown = shown_at(place);
+    if (shown == kNotShown) return;
     const double kick = kick_ahead(body, place, coming_statics, pushes, shoves);
-    if (snapshot_.goes_on) snapshot_.changed.push_back(static_cast<std::uint32_t>(place));
+    if (snapshot_.goes_on) snapshot_.changed.push_back(shown);
     if (kick > 0 || !body.born) kicked_.push_back(body.id);
-    show_state(body, place, kick);
+    show_state(body, shown, kick);
   });
   changed.clear();
   if (snapshot_.goes_on) {
@@ -101,13 +108,32 @@ const core::Snapshot& Simulation::snapshot() {
   } else {
     list_contacts();
     joints_.list_pairs(table_, snapshot_.joints);
+    leave_out_guests(snapshot_.contacts);
+    leave_out_guests(snapshot_.joints);
   }
-  if (coupling_ != nullptr) leave_out_guests();
   steps_since_snapshot_ = 0;
   moved_.clear();
   moved_contacts_.clear();
   snapshot_is_fresh_ = true;
   return snapshot_;
+}
+
+/// Lays out a snapshot of all bodies but guests.
+void Simulation::find_shown() {
+  shown_at_.clear();
+  std::uint32_t next = static_cast<std::uint32_t>(table_.size());
+  if (coupling_ != nullptr) {
+    next = 0;
+    for (const HostedBody& body : table_.bodies()) shown_at_.push_back(is_guest(*body.rigid) ? kNotShown : next++);
+  }
+  snapshot_.bodies.resize(next);
+}
+
+/// Turns places in the table into places in the snapshot. Pairs with a guest are left out.
+void Simulation::leave_out_guests(std::vector<core::Contact>& pairs) const {
+  if (shown_at_.empty()) return;
+  for (core::Contact& pair : pairs) pair = {shown_at(pair.a), shown_at(pair.b)};
+  std::erase_if(pairs, [](const core::Contact& pair) { return pair.a == kNotShown || pair.b == kNotShown; });
 }
 
 /// Writes a body's state to its place in the snapshot, and counts it.
@@ -155,6 +181,9 @@ void Simulation::list_contacts() {
 /// Replaces the contacts of the bodies that have moved. Those of other bodies are as they were.
 void Simulation::list_changed_contacts() {
   std::vector<core::Contact>& changed = snapshot_.changed_contacts;
+  leave_out_guests(moved_contacts_);
+  for (std::uint32_t& place : moved_) place = shown_at(place);
+  std::erase(moved_, kNotShown);
   std::ranges::sort(moved_contacts_, before);
   std::ranges::unique_copy(moved_contacts_, std::back_inserter(changed), same);
   is_moved_.resize(table_.size());

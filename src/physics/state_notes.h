@@ -16,9 +16,12 @@ namespace aurasim::physics {
 using TouchedPair = std::pair<core::ObjectRef, core::ObjectRef>;
 
 struct StateNotes {
+  StateNotes() { for_borders.note_all(); }
+
   ChangedBodies for_snapshot;      ///< since the last snapshot; all: bodies have come, gone or been born
   ChangedBodies for_hash;          ///< since the last hash
   ChangedBodies for_step;          ///< since the last step began, and in it
+  ChangedBodies for_borders;       ///< since a coupled world last looked for bodies near borders; else always all
   ChangedBodies for_copy;          ///< since the copy that later ones share
   ChangedBodies parted;            ///< since that copy: the contacts of these bodies may have changed
   std::vector<TouchedPair> pairs;  ///< since that copy: all pairs of a body of `parted` that are in contact are here
@@ -29,15 +32,17 @@ struct StateNotes {
     for_snapshot.note(id);
     for_hash.note(id);
     for_step.note(id);
+    for_borders.note(id);
     for_copy.note(id);
   }
   void note_block(core::BodyId id) {
     for_hash.note(id);
+    for_borders.note(id);
     for_copy.note(id);
   }
   /// All bodies, contacts and joints may have changed.
   void note_all() {
-    for (ChangedBodies* reader : {&for_snapshot, &for_hash, &for_step}) reader->note_all();
+    for (ChangedBodies* reader : {&for_snapshot, &for_hash, &for_step, &for_borders}) reader->note_all();
     give_up_copy();
   }
   /// A body has come, or is born.
@@ -45,6 +50,7 @@ struct StateNotes {
     for_snapshot.note_all();
     for_hash.note(id);
     for_step.note(id);
+    for_borders.note(id);
     for_copy.note(id);
     parted.note(id);
   }

@@ -1,5 +1,5 @@
 // What a world costs in which almost everything sleeps: 50 balls roll past pairs of boxes that lie on each other. The
-// frame of a node and its parts, and the memory of a body, on one node and on four.
+// frame of a node and its parts, and the memory of a body, on one node and on four, also coupled ones.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -62,12 +62,15 @@ WorldCut world_of(std::size_t boxes, double step_s) {
   return world;
 }
 
-lab::ClusterRules rules(bool checked) {
+lab::ClusterRules rules(std::size_t nodes, bool coupled) {
+  const bool checked = nodes > 1 && !coupled;
   lab::ClusterRules rules;
+  rules.coupled = coupled;
   rules.aura.redo = checked;
-  rules.sync = checked ? SyncMode::kDeterministic : SyncMode::kBounded;
+  rules.sync = nodes > 1 ? SyncMode::kDeterministic : SyncMode::kBounded;
   rules.physics.solver = physics::Solver::kSoftStep;
   rules.physics.continuous = true;
+  if (coupled) rules.physics.top_speed_m_s = 20;
   rules.hash_states = true;
   rules.clock = node::PhaseClock::kThreadCpu;
   rules.neighbour_distance_m = 100;
@@ -83,7 +86,7 @@ void rest(benchmark::State& state) {
   const Scene scene = kinds();
   const double cell = kSpacing_m * static_cast<double>(side_of(boxes)) / 2;
   const RegionMap map = nodes == 1 ? RegionMap::columns(1, cell) : RegionMap::grid(2, 2, cell, cell);
-  const lab::ClusterRules how = rules(nodes > 1);
+  const lab::ClusterRules how = rules(nodes, state.range(2) != 0);
   auto world = std::make_unique<WorldCut>(world_of(boxes, how.aura.step_s));
   lab::VirtualCluster cluster(scene, map, how, world.get());
   world.reset();
@@ -125,8 +128,9 @@ void rest(benchmark::State& state) {
 }
 
 BENCHMARK(rest)
-    ->ArgNames({"boxes", "nodes"})
-    ->ArgsProduct({{1000, 50000, 100000}, {1, 4}})
+    ->ArgNames({"boxes", "nodes", "coupled"})
+    ->ArgsProduct({{1000, 50000, 100000}, {1, 4}, {0}})
+    ->ArgsProduct({{1000, 20000, 100000}, {4}, {1}})
     ->Iterations(600)
     ->Unit(benchmark::kMicrosecond);
 

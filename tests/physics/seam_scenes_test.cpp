@@ -15,7 +15,7 @@ using core::BodyRecord;
 using core::Vec3;
 
 constexpr double kSide = 8, kOneBlock = 1e5;
-constexpr int kSteps = 300;  // 5 s
+constexpr int kStates = 300;  // 5 s
 
 /// Where the middle of a scene is.
 struct Spot {
@@ -63,7 +63,7 @@ class SeamScenes : public ::testing::TestWithParam<Spot> {
       for (BodyRecord& body : bodies) body.block = {0, 0};
     }
     world.add(bodies);
-    run(world, kSteps);
+    run(world, kStates);
     Errors errors;
     blocks_.clear();
     for (std::size_t i = 0; i < bodies.size(); ++i) {

@@ -67,6 +67,7 @@ void SoftIslands::insert(btRigidBody& body) {
   body.setUserIndex3(static_cast<int>(slot));
   entries_[slot].body = &body;
   entries_[slot].is_guest = physics::is_guest(body);
+  if (entries_[slot].is_guest) guests_.push_back(&body);
   place_of(body).changes = &changes_;
   changes_.push_back(slot);
 }
@@ -77,6 +78,7 @@ void SoftIslands::remove(btRigidBody& body) {
   if (has(slot, kKept)) forget_sleepers();
   states_[slot] = 0;
   unlist(slot);
+  if (entries_[slot].is_guest) std::erase(guests_, &body);
   entries_[slot].body = nullptr;
   place_of(body).changes = nullptr;
   free_.push_back(slot);

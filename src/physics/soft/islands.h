@@ -74,6 +74,9 @@ class SoftIslands {
   /// Does the body move in the step, as far as this region knows?
   bool moves(std::uint32_t slot) const { return has(slot, kMoves); }
   bool is_guest(std::uint32_t slot) const { return entries_[slot].is_guest; }
+  std::span<btRigidBody* const> guests() const { return guests_; }
+  /// Above all slots.
+  std::size_t slots() const { return entries_.size(); }
   /// Makes a guest move in the step or not, as its host has decided.
   void decide(btRigidBody& guest, bool moves);
   // After rest():
@@ -165,6 +168,7 @@ class SoftIslands {
   bool has_woken_any_ = false;
   std::vector<btRigidBody*> awake_;
   std::vector<btRigidBody*> asleep_;  ///< or disabled
+  std::vector<btRigidBody*> guests_;
   std::vector<SoftTouch> touches_, unsorted_;
   std::vector<std::uint32_t> ends_;  ///< by user index: end of the body's touches
   std::vector<btTypedConstraint*> joints_;

@@ -99,14 +99,10 @@ void SoftShared::call_sleepers(SoftIslands& islands) {
   }
 }
 
-bool SoftShared::meet(std::span<btRigidBody* const> bodies, SoftContacts& contacts, SoftIslands& islands) {
-  std::vector<btRigidBody*> by_index;
-  for (btRigidBody* body : bodies) {
-    const auto index = static_cast<std::size_t>(body->getUserIndex());
-    if (by_index.size() <= index) by_index.resize(index + 1, nullptr);
-    by_index[index] = body;
-  }
-  touched_.assign(by_index.size(), {});
+bool SoftShared::meet(SoftContacts& contacts, SoftIslands& islands) {
+  for (const std::uint32_t slot : touched_slots_) touched_[slot] = {};
+  touched_slots_.clear();
+  touched_.resize(islands.slots());
   struct Told {
     std::vector<const btRigidBody*> bodies;
     std::vector<std::pair<const SoftTouch*, SoftPhase>> touches;
@@ -115,12 +111,12 @@ bool SoftShared::meet(std::span<btRigidBody* const> bodies, SoftContacts& contac
   for_each_peer(coupling_, [&](core::RegionId peer) { told[peer]; });
   for (const SoftTouch& touch : contacts.touches()) {
     if (touch.a < 0 || touch.b < 0 || !touch.acts) continue;
-    const btRigidBody* const ends[2] = {by_index[static_cast<std::size_t>(touch.a)],
-                                        by_index[static_cast<std::size_t>(touch.b)]};
+    const btRigidBody* const ends[2] = {&islands.body_at(touch.slot_a), &islands.body_at(touch.slot_b)};
     const SoftPhase phase = physics::phase_of(place(*ends[0], block_m_), place(*ends[1], block_m_));
     if (phase == SoftPhase::kInside) continue;
     for (int i = 0; i < 2; ++i) {
-      Touched& touched = touched_[static_cast<std::size_t>(ends[i]->getUserIndex())];
+      Touched& touched = touched_[slot_of(*ends[i])];
+      if (touched.phases == 0) touched_slots_.push_back(slot_of(*ends[i]));
       touched.phases |= bit_of(phase);
       if (phase == SoftPhase::kEdges)
         touched.across = is_guest(*ends[1 - i]) ? place_of(*ends[1 - i]).host : coupling_.self;
@@ -147,7 +143,7 @@ bool SoftShared::meet(std::span<btRigidBody* const> bodies, SoftContacts& contac
     parcel_.clear();
     parcel_.put(static_cast<std::uint32_t>(what.bodies.size()));
     for (const btRigidBody* body : what.bodies) {
-      const std::uint8_t phases = elsewhere(touched_[static_cast<std::size_t>(body->getUserIndex())], peer);
+      const std::uint8_t phases = elsewhere(touched_[slot_of(*body)], peer);
       write_body(*body, islands.moves(slot_of(*body)), phases, parcel_);
     }
     std::size_t patches = 0;
@@ -155,8 +151,8 @@ bool SoftShared::meet(std::span<btRigidBody* const> bodies, SoftContacts& contac
     parcel_.put(static_cast<std::uint32_t>(patches));
     for (const auto& [touch, phase] : what.touches) {
       for (const SoftPatch& patch : contacts.patches_of(*touch)) {
-        for (const int end : {touch->a, touch->b}) {
-          parcel_.put(core::value_of(place_of(*by_index[static_cast<std::size_t>(end)]).id));
+        for (const std::uint32_t end : {touch->slot_a, touch->slot_b}) {
+          parcel_.put(core::value_of(place_of(islands.body_at(end)).id));
         }
         parcel_.put(static_cast<std::int32_t>(touch->parts.part0));
         parcel_.put(static_cast<std::int32_t>(touch->parts.part1));
@@ -170,8 +166,7 @@ bool SoftShared::meet(std::span<btRigidBody* const> bodies, SoftContacts& contac
   foreign_patches_.clear();
   for_each_peer(coupling_, [&](core::RegionId peer) { read(peer); });
   bool any_woken = false;
-  for (btRigidBody* body : bodies) {
-    if (!is_guest(*body)) continue;
+  for (btRigidBody* body : islands.guests()) {
     const auto known = foreign_.find(place_of(*body).id);
     islands.decide(*body, known != foreign_.end() && known->second.moves);
     any_woken = any_woken || islands.is_woken(slot_of(*body));
@@ -213,7 +208,7 @@ void SoftShared::make_room(std::vector<btRigidBody*>& held) {
     const BodyPlace& place = place_of(*held[i]);
     known_[i] = {place.id, place.is_guest ? place.host : coupling_.self, {}, 0, nullptr};
     if (!place.is_guest) {
-      known_[i].touched = touched_[static_cast<std::size_t>(held[i]->getUserIndex())];
+      known_[i].touched = touched_[slot_of(*held[i])];
     } else if (const auto body = foreign_.find(place.id); body != foreign_.end()) {
       body->second.mover = static_cast<std::int32_t>(i);
       known_[i].elsewhere = body->second.elsewhere;

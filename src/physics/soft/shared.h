@@ -38,8 +38,8 @@ class SoftShared final : public SoftExchange {
   void call_sleepers(SoftIslands& islands);
 
   /// Tells the other regions which contacts were found and which bodies move, and learns the same of them. Guests then
-  /// move if their hosts say so. `bodies`: all that are not static. Returns true if a guest is woken.
-  bool meet(std::span<btRigidBody* const> bodies, SoftContacts& contacts, SoftIslands& islands);
+  /// move if their hosts say so. Returns true if a guest is woken.
+  bool meet(SoftContacts& contacts, SoftIslands& islands);
 
   /// Appends an empty place to `held` (bodies by mover) for each body that is only known from contacts of others.
   void make_room(std::vector<btRigidBody*>& held);
@@ -144,8 +144,9 @@ class SoftShared final : public SoftExchange {
   double block_m_;
   std::map<core::BodyId, Foreign> foreign_;
   std::vector<ForeignPatch> foreign_patches_;
-  std::vector<Touched> touched_;  ///< by user index
-  std::vector<Known> known_;      ///< by mover
+  std::vector<Touched> touched_;              ///< by slot in SoftIslands
+  std::vector<std::uint32_t> touched_slots_;  ///< those that are not empty
+  std::vector<Known> known_;                  ///< by mover
   std::vector<Placed> placed_;
   std::array<std::vector<Waiting>, kSoftPhases> waiting_;
   std::vector<Chain> around_corners_;

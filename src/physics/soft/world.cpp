@@ -60,8 +60,10 @@ class SoftWorld final : public World {
       std::ranges::copy_if(islands_.awake(), std::back_inserter(moved_),
                            [this](const btRigidBody* body) { return islands_.is_woken(slot_of(*body)); });
     }
-    if (shared_ && shared_->meet(span_of(m_nonStaticRigidBodies), contacts_, islands_)) {
+    if (shared_ && shared_->meet(contacts_, islands_)) {
       contacts_.add_woken_guests(*getPairCache());
+      std::ranges::copy_if(islands_.guests(), std::back_inserter(moved_),
+                           [this](const btRigidBody* guest) { return islands_.is_woken(slot_of(*guest)); });
     }
     islands_.sort(contacts_.touches(), team_);
     core::Progress::mark();
