@@ -28,13 +28,8 @@ double seconds_since(std::chrono::steady_clock::time_point begun) {
 }
 
 struct Peer {
-  Peer(Domain& domain, const SeamSettings& settings, core::RegionId peer, Wakeup& wakeup)
-      : writer(domain,
-               on(TopicId::kSeam, {.source = settings.region, .destination = peer, .life = settings.life},
-                  settings.region),
-               wakeup) {}
-
-  Writer writer;
+  bool is_near = false;
+  std::optional<Writer> writer;              ///< of a peer that is not near: once a parcel goes to it
   std::deque<messages::SeamParcel> waiting;  ///< parcels that came while those of another region were fetched
   std::uint32_t posted = 0, fetched = 0;     ///< in this step
   double waited_s = 0;                       ///< in this step
@@ -52,13 +47,20 @@ struct DdsSeams::Impl {
                on(TopicId::kSeam, {.destination = settings.region, .life = settings.life}, settings.region), wakeup) {
     for (std::uint32_t i = 0; i < settings.region_count; ++i) {
       if (core::RegionId{i} == settings.region) continue;
-      peers.try_emplace(core::RegionId{i}, participant.domain(), settings, core::RegionId{i}, wakeup);
+      peers.try_emplace(core::RegionId{i});
+    }
+    for (const core::RegionId region : settings.near) {
+      peers.at(region).is_near = true;
+      make_writer(region);
     }
     expected.map_version = settings.map_version;
     expected.destination = settings.region;
     expected.region_count = settings.region_count;
   }
 
+  void make_writer(core::RegionId to);
+  void wait_for_reader(core::RegionId to);
+  void expect_alive(core::RegionId region, std::chrono::steady_clock::time_point begun) const;
   bool take(core::RegionId from, Peer& peer);
   std::optional<core::RegionId> find_lost() const;
   bool receive();
@@ -79,6 +81,32 @@ struct DdsSeams::Impl {
   bool has_fetched = false;  ///< in the exchange that goes on
   wire::SeamParcel sample;   // reused
 };
+
+void DdsSeams::Impl::make_writer(core::RegionId to) {
+  const topics::Route route{.source = settings.region, .destination = to, .life = settings.life};
+  peers.at(to).writer.emplace(participant.domain(), on(TopicId::kSeam, route, settings.region), wakeup);
+}
+
+/// A parcel that is written before is lost: the writer keeps none for readers that it does not know yet. What the other
+/// end has not got because it does not know the writer yet, it asks for.
+void DdsSeams::Impl::wait_for_reader(core::RegionId to) {
+  const auto begun = std::chrono::steady_clock::now();
+  const Writer& writer = *peers.at(to).writer;
+  while (!writer.reaches(to)) {
+    expect_alive(to, begun);
+    core::Progress::mark();
+    participant.progress();
+    wakeup.wait(1ms);
+  }
+}
+
+/// Throws core::SeamsBroken when a region that is waited for is lost, or after a while any other.
+void DdsSeams::Impl::expect_alive(core::RegionId region, std::chrono::steady_clock::time_point begun) const {
+  std::optional<core::RegionId> lost;
+  if (settings.is_lost(region)) lost = region;
+  if (!lost && std::chrono::steady_clock::now() - begun > kAsksForAll) lost = find_lost();
+  if (lost) throw core::SeamsBroken(fmt::format("region {} was lost in the middle of a step", core::value_of(*lost)));
+}
 
 /// Takes the next parcel of this step. Parcels of earlier steps are dropped.
 bool DdsSeams::Impl::take(core::RegionId from, Peer& peer) {
@@ -164,12 +192,19 @@ DdsSeams::DdsSeams(Participant& participant, const SeamSettings& settings)
 
 DdsSeams::~DdsSeams() = default;
 
+std::size_t DdsSeams::endpoints_of(core::RegionId region) const {
+  const auto peer = impl_->peers.find(region);
+  if (peer == impl_->peers.end()) return 0;
+  return (peer->second.is_near ? 1 : 0) + (peer->second.writer ? 1 : 0);
+}
+
 std::vector<std::string> DdsSeams::unmatched(core::RegionId region) const {
   std::vector<std::string> missing;
-  const auto peer = impl_->peers.find(region);
-  if (peer == impl_->peers.end()) return missing;
-  if (!impl_->reader.watch().any_matched({}, region)) missing.emplace_back("its seam writer");
-  if (!peer->second.writer.reaches(region)) missing.emplace_back("its seam reader");
+  const auto found = impl_->peers.find(region);
+  if (found == impl_->peers.end()) return missing;
+  const Peer& peer = found->second;
+  if (peer.is_near && !impl_->reader.watch().any_matched({}, region)) missing.emplace_back("its seam writer");
+  if (peer.writer && !peer.writer->reaches(region)) missing.emplace_back("its seam reader");
   return missing;
 }
 
@@ -182,16 +217,20 @@ void DdsSeams::begin(core::Generation generation, core::Step step) {
   for (auto& [region, peer] : impl_->peers) {
     peer.posted = peer.fetched = 0;
     peer.waited_s = 0;
-    peer.writer.forget_acknowledged();
+    if (peer.writer) peer.writer->forget_acknowledged();
   }
 }
 
 void DdsSeams::post(core::RegionId to, std::span<const std::byte> parcel) {
   const auto begun = std::chrono::steady_clock::now();
   Peer& peer = impl_->peers.at(to);
+  if (!peer.writer) {
+    impl_->make_writer(to);
+    impl_->wait_for_reader(to);
+  }
   const messages::SeamHeader header{impl_->settings.region, to, impl_->generation, impl_->step, ++peer.posted};
   messages::encode(header, impl_->settings.map_version, parcel, impl_->sample);
-  if (peer.writer.write(&impl_->sample) == WriteResult::kFailed) {
+  if (peer.writer->write(&impl_->sample) == WriteResult::kFailed) {
     throw core::SeamsBroken(fmt::format("region {} takes no parcels", core::value_of(to)));
   }
   impl_->note_posted(begun);
@@ -207,10 +246,7 @@ std::span<const std::byte> DdsSeams::fetch(core::RegionId from) {
       impl_->note_fetched(peer, begun);
       return peer.last.octets;
     }
-    std::optional<core::RegionId> lost;
-    if (impl_->settings.is_lost(from)) lost = from;
-    if (!lost && std::chrono::steady_clock::now() - begun > kAsksForAll) lost = impl_->find_lost();
-    if (lost) throw core::SeamsBroken(fmt::format("region {} was lost in the middle of a step", core::value_of(*lost)));
+    impl_->expect_alive(from, begun);
     core::Progress::mark();
     impl_->participant.progress();
     impl_->wakeup.wait(5ms);

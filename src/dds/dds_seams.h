@@ -15,6 +15,8 @@ namespace aurasim::dds {
 struct SeamSettings {
   core::RegionId region{};
   std::uint32_t region_count = 0;  ///< all others are peers
+  /// Peers that parcels go to in every step. They have writers from the beginning, at both ends.
+  std::vector<core::RegionId> near;
   std::uint64_t map_version = 0;
   core::Generation life = 0;  ///< see TransportSettings
   /// True when a region's node is known to be lost.
@@ -37,13 +39,17 @@ class DdsSeams final : public core::SeamMail {
   DdsSeams(Participant& participant, const SeamSettings& settings);
   ~DdsSeams() override;
 
-  /// Names of the endpoints of a region that are not matched yet.
+  /// Number of the region's endpoints that have to be matched.
+  std::size_t endpoints_of(core::RegionId region) const;
+  /// Names of those that are not matched yet.
   std::vector<std::string> unmatched(core::RegionId region) const;
 
   /// The exchanges since begin().
   const ExchangeTimes& times();
 
   void begin(core::Generation generation, core::Step step) override;
+  /// The first parcel to a region that is not near makes the writer, and waits until the region's reader is matched.
+  /// Throws core::SeamsBroken if the region takes no parcels, or its node is lost.
   void post(core::RegionId to, std::span<const std::byte> parcel) override;
   /// Throws core::SeamsBroken once the region's node is lost.
   std::span<const std::byte> fetch(core::RegionId from) override;

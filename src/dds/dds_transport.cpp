@@ -95,7 +95,9 @@ struct DdsTransport::Impl {
   bool is_lost(RegionId region);
   void wait_for(const std::vector<RegionId>& listeners);
   void make_writers_for(const core::Outbox& outbox);
-  std::size_t endpoints_of(const Link& link) const { return Links::endpoints_of(link) + (seams ? 2 : 0); }
+  std::size_t endpoints_of(const Link& link) const {
+    return Links::endpoints_of(link) + (seams ? seams->endpoints_of(link.region) : 0);
+  }
   /// Names of the link's endpoints that are not matched yet.
   std::vector<std::string> unmatched(const Link& link) const;
   std::vector<std::string> missing_neighbours(std::vector<RegionId>& regions) const;
@@ -131,7 +133,13 @@ DdsTransport::Impl::Impl(Participant& participant_in, const TransportSettings& s
       wakeup(participant.domain().wakeup()),
       links(participant.domain(), settings.region, settings.life, settings.neighbours) {
   if (!settings.coupled) return;
-  SeamSettings seam_settings{settings.region, settings.region_count, settings.map_version, settings.life, {}, {}};
+  SeamSettings seam_settings{.region = settings.region,
+                             .region_count = settings.region_count,
+                             .near = settings.near,
+                             .map_version = settings.map_version,
+                             .life = settings.life,
+                             .is_lost = {},
+                             .is_node = {}};
   seam_settings.is_lost = [this](RegionId region) { return is_lost(region); };
   seam_settings.is_node = [this](RegionId region, const ProcessPrefix& process) {
     Link* const link = links.find(region);

@@ -33,7 +33,9 @@ struct TransportSettings {
   std::uint32_t static_count = 0xffff'ffffU;
   std::uint32_t joint_count = 0xffff'ffffU;
   bool coupled = false;  ///< regions are coupled: seams() is there, and all other regions are neighbours
-  double block_m = 0;    ///< side of the blocks; 0: not known, so blocks are not checked
+  /// Where regions are coupled: those that exchange parcels with this one in every step (SeamSettings::near).
+  std::vector<core::RegionId> near = {};
+  double block_m = 0;  ///< side of the blocks; 0: not known, so blocks are not checked
   /// True when that region's node is alive but has been computing one step for long. Waiting to be matched by it then
   /// goes on until that step is done. Empty: no node counts as busy.
   std::function<bool(core::RegionId)> is_busy = {};

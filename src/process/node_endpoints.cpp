@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 
 #include "host/heartbeat.h"
+#include "physics/coupling.h"
 #include "setup/guard_log.h"
 #include "setup/key_choice.h"
 #include "setup/launch_setup.h"
@@ -39,6 +40,17 @@ dds::Settings settings_of_node(const config::Launch& launch, const NodeOptions& 
   return settings;
 }
 
+/// Coupled regions that exchange parcels with `region` in every step.
+std::vector<core::RegionId> regions_near(const config::Launch& launch, core::RegionId region) {
+  const core::BlockOwners owners = physics::block_owners(launch.regions, launch.scene, setup::physics_settings(launch));
+  std::vector<core::RegionId> near;
+  for (std::uint32_t i = 0; i < owners.size(); ++i) {
+    const core::RegionId other{i};
+    if (other != region && owners.are_near(region, other)) near.push_back(other);
+  }
+  return near;
+}
+
 }  // namespace
 
 dds::TransportSettings neighbour_transport(const config::Launch& launch, core::RegionId region) {
@@ -51,6 +63,7 @@ dds::TransportSettings neighbour_transport(const config::Launch& launch, core::R
   settings.static_count = static_cast<std::uint32_t>(launch.scene.statics.size() + core::kRoomForClients);
   settings.joint_count = static_cast<std::uint32_t>(launch.scene.joints.size() + core::kRoomForClients);
   settings.coupled = launch.is_coupled();
+  if (settings.coupled) settings.near = regions_near(launch, region);
   settings.block_m = launch.block_m();
   return settings;
 }

@@ -60,6 +60,22 @@ int threads_of(const config::Launch& launch, std::size_t nodes) {
   return launch.physics.threads.value_or(static_cast<int>(std::clamp<std::size_t>(share, 1, 64)));
 }
 
+physics::Settings physics_settings(const config::Launch& launch) {
+  physics::Settings settings;
+  settings.step_s = launch.step_s();
+  settings.substeps = launch.time.substeps;
+  settings.top_speed_m_s = launch.tolerances.speed_m_s;
+  settings.solver = physics::solver_named(launch.physics.solver);
+  settings.solver_iterations = launch.physics.iterations;
+  settings.friction_directions = launch.physics.friction_directions;
+  settings.contact_erp = launch.physics.contact_erp;
+  settings.continuous = launch.physics.is_continuous();
+  settings.block_m = launch.block_m();
+  settings.threads = threads_of(launch, launch.regions.size());
+  settings.foresight_s = launch.step_s() * core::horizon::announcing(launch.lookahead(), core::horizon::kMostHops);
+  return settings;
+}
+
 node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, core::Generation generation) {
   node::NodeSetup setup;
   setup.protocol.self = region;
@@ -67,17 +83,7 @@ node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, 
   setup.protocol.sync = launch.time.sync;
   setup.protocol.aura = aura_rules(launch);
   setup.protocol.neighbour_distance_m = listening_distance_m(launch);
-  setup.physics.step_s = launch.step_s();
-  setup.physics.substeps = launch.time.substeps;
-  setup.physics.top_speed_m_s = launch.tolerances.speed_m_s;
-  setup.physics.solver = physics::solver_named(launch.physics.solver);
-  setup.physics.solver_iterations = launch.physics.iterations;
-  setup.physics.friction_directions = launch.physics.friction_directions;
-  setup.physics.contact_erp = launch.physics.contact_erp;
-  setup.physics.continuous = launch.physics.is_continuous();
-  setup.physics.block_m = launch.block_m();
-  setup.physics.threads = threads_of(launch, launch.regions.size());
-  setup.physics.foresight_s = launch.step_s() * core::horizon::announcing(launch.lookahead(), core::horizon::kMostHops);
+  setup.physics = physics_settings(launch);
   setup.control = launch.control_rules();
   if (!launch.control.replay.empty()) setup.recorded = records::read_setpoints(launch.control.replay);
   return setup;

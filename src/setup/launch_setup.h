@@ -21,6 +21,7 @@ double listening_distance_m(const config::Launch& launch);
 /// Number of threads of each node when `nodes` run on this host: as in the file, or else its share of the cores that
 /// this process may use, but at least 1.
 int threads_of(const config::Launch& launch, std::size_t nodes);
+physics::Settings physics_settings(const config::Launch& launch);
 node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, core::Generation generation);
 messages::WorldMap world_map(const config::Launch& launch);
 
