@@ -12,6 +12,7 @@ const DOMAIN = seconds("AURASIM_DOMAIN", 171);
 const CROWD_S = seconds("AURASIM_CROWD_S", 20);
 const NODES = 4;
 const STACKED = 96; // bodies of corner_stacks that are there from the start
+const LOOKAHEAD = 4; // at least: states that a body is under way
 const SHOTS = `${ROOT}build/screenshots`;
 // What takes 2 s at most on a quiet machine, and is reported, may take so long on a busy one.
 const busy_ms = 8000;
@@ -273,7 +274,8 @@ test("ADeletedBodyIsGone", limit, async () => {
   const { id } = await bodyToClick();
   await page.keyboard.press("Delete");
   await takesEffect("remove");
-  await until(() => !witness.has(id), `body ${id} to be gone`);
+  for (let i = 0; i < LOOKAHEAD && witness.has(id); ++i) await step();  // one that is under way is removed where it arrives
+  await until(() => !witness.has(id), () => `body ${id} to be gone in state ${witness.world.stamp}: ${JSON.stringify(witness.status)}`);
   await until(agreeOnBodies, "one body less in the nodes");
   await seen((n) => !window.aurasim.bodies().some((body) => body.id === n) && window.aurasim.selected === null, id);
 });
