@@ -87,8 +87,8 @@ void DdsSeams::Impl::make_writer(core::RegionId to) {
   peers.at(to).writer.emplace(participant.domain(), on(TopicId::kSeam, route, settings.region), wakeup);
 }
 
-/// A parcel that is written before is lost: the writer keeps none for readers that it does not know yet. What the other
-/// end has not got because it does not know the writer yet, it asks for.
+/// A parcel that is written before is lost: the writer keeps none for readers that it does not know yet. The other
+/// end may not know the writer yet. It then asks for the parcel once it does.
 void DdsSeams::Impl::wait_for_reader(core::RegionId to) {
   const auto begun = std::chrono::steady_clock::now();
   const Writer& writer = *peers.at(to).writer;

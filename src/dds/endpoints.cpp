@@ -115,8 +115,7 @@ Writer::Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
   if (writer_ == nullptr) {
     throw_not_created("writer", spec);
   }
-  if (is_of_nodes_) domain.guard().add_writer_of_nodes(entity_of(writer_->guid()));
-  if (spec.topic == TopicId::kAura) domain.guard().add_steady_writer(entity_of(writer_->guid()));
+  if (is_of_nodes_) domain.guard().add_writer_of_nodes(entity_of(writer_->guid()), spec.topic == TopicId::kAura);
   if (spec.region) {
     domain.directory().add(writer_->guid(), *spec.region);
   }
@@ -131,7 +130,6 @@ Writer::Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
 Writer::~Writer() {
   domain_.speakers().remove(writer_->guid());
   if (is_of_nodes_) domain_.guard().remove_writer_of_nodes(entity_of(writer_->guid()));
-  domain_.guard().remove_steady_writer(entity_of(writer_->guid()));
   domain_.liveliness().remove(writer_);
   // With samples in its history a writer can lock up as it is deleted: a heartbeat that is being sent just then looks
   // for holes in the history for ever (Fast DDS 2.9.1, StatefulWriter::add_gaps_for_holes_in_history_).

@@ -48,8 +48,6 @@ class WatchedBodies {
     }
   }
 
-  std::size_t size() const { return ids_.size(); }
-
  private:
   std::vector<core::BodyId> ids_;     ///< ascending
   std::vector<core::BodyId> merged_;  ///< scratch

@@ -127,14 +127,16 @@ void DatagramGuard::set_nodes(Repeats::Prefixes nodes) {
   repeats_.set_nodes(std::move(nodes));
 }
 
-void DatagramGuard::add_writer_of_nodes(std::uint32_t writer) {
+void DatagramGuard::add_writer_of_nodes(std::uint32_t writer, bool is_steady) {
   const std::lock_guard lock(mutex_);
   repeats_.add_writer_of_nodes(writer);
+  if (is_steady) heartbeats_.add_writer(writer);
 }
 
 void DatagramGuard::remove_writer_of_nodes(std::uint32_t writer) {
   const std::lock_guard lock(mutex_);
   repeats_.remove_writer_of_nodes(writer);
+  heartbeats_.remove_writer(writer);
 }
 
 void DatagramGuard::note_sent(std::span<const std::uint8_t> bytes, Time now) {
@@ -143,16 +145,6 @@ void DatagramGuard::note_sent(std::span<const std::uint8_t> bytes, Time now) {
     repeats_.note_sent(writer, number, sample_B);
     heartbeats_.note_sent(writer, number, now);
   });
-}
-
-void DatagramGuard::add_steady_writer(std::uint32_t writer) {
-  const std::lock_guard lock(mutex_);
-  heartbeats_.add_writer(writer);
-}
-
-void DatagramGuard::remove_steady_writer(std::uint32_t writer) {
-  const std::lock_guard lock(mutex_);
-  heartbeats_.remove_writer(writer);
 }
 
 bool DatagramGuard::allows(const Heartbeat& heartbeat, const Peer& peer, Time now) {

@@ -45,8 +45,9 @@ class DatagramGuard {
   void set_own(const GuidPrefix& own);
   /// Sets the processes that are nodes of the run, the own one excluded (repeats.h).
   void set_nodes(Repeats::Prefixes nodes);
-  /// Registers a writer of this process whose samples only nodes need.
-  void add_writer_of_nodes(std::uint32_t writer);
+  /// Registers a writer of this process whose samples only nodes need. `is_steady`: it writes a sample for each state
+  /// (heartbeat_limit.h).
+  void add_writer_of_nodes(std::uint32_t writer, bool is_steady = false);
   void remove_writer_of_nodes(std::uint32_t writer);
   /// Drops everything that `process` sends from now on, until it is forgiven.
   void shun(const GuidPrefix& process);
@@ -67,9 +68,6 @@ class DatagramGuard {
   Delivery& delivery() { return delivery_; }
   /// Takes note of a datagram that this process is about to send.
   void note_sent(std::span<const std::uint8_t> bytes, Time now);
-  /// Registers a writer of this process that writes a sample for each state (heartbeat_limit.h).
-  void add_steady_writer(std::uint32_t writer);
-  void remove_steady_writer(std::uint32_t writer);
   /// True if a heartbeat of this process is to be sent.
   bool allows(const Heartbeat& heartbeat, const Peer& peer, Time now);
 

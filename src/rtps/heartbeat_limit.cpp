@@ -2,30 +2,17 @@
 
 #include <algorithm>
 
-#include "rtps/datagram_findings.h"
-#include "rtps/wire_cursor.h"
+#include "rtps/only_submessage.h"
 
 namespace aurasim::rtps {
 
 std::optional<Heartbeat> heartbeat_in(std::span<const std::uint8_t> datagram) {
-  constexpr std::size_t kSubmessageHeader_B = 4;
-  constexpr std::uint8_t kHeartbeat = 0x07, kInfoTimestamp = 0x09, kInfoDestination = 0x0e, kStatistics = 0x80;
-  constexpr std::uint8_t kLittleEndian = 0x01, kFinal = 0x02, kLiveliness = 0x04;
-  if (datagram.size() < kHeaderBytes) return std::nullopt;
-  WireCursor rest(datagram, kHeaderBytes, datagram.size(), false);
-  std::optional<Heartbeat> found;
-  while (rest.left() >= kSubmessageHeader_B) {
-    const std::uint8_t kind = rest.u8(), flags = rest.u8();
-    rest.set_little((flags & kLittleEndian) != 0);
-    const std::size_t size = rest.u16();
-    WireCursor body = rest.part(size == 0 ? rest.left() : size);
-    if (kind == kInfoTimestamp || kind == kInfoDestination || kind == kStatistics) continue;
-    if (kind != kHeartbeat || found || (flags & (kFinal | kLiveliness)) != 0) return std::nullopt;
-    const std::uint32_t reader = body.entity();
-    found = Heartbeat{body.entity(), reader};
-    if (body.failed()) return std::nullopt;
-  }
-  return found;
+  constexpr std::uint8_t kHeartbeat = 0x07, kFinal = 0x02, kLiveliness = 0x04;
+  auto only = only_submessage(datagram);
+  if (!only || only->kind != kHeartbeat || (only->flags & (kFinal | kLiveliness)) != 0) return std::nullopt;
+  const std::uint32_t reader = only->body.entity();
+  const Heartbeat found{only->body.entity(), reader};
+  return only->body.failed() ? std::nullopt : std::optional(found);
 }
 
 void HeartbeatLimit::remove_writer(std::uint32_t writer) { writers_.erase(writer); }

@@ -79,7 +79,7 @@ TEST(Datagram, Of92BytesWithStatisticsThatAreNotAtItsEndIsRefused) {
 }
 
 TEST(Datagram, LosesItsStatistics) {
-  const Bytes bytes = datagram({heartbeat(1, 1), submessage(0x80, 0, Octets().zeros(56))});
+  const Bytes bytes = datagram({heartbeat(1, 1), statistics()});
   rtps::Findings findings;
   EXPECT_EQ(rtps::check_datagram(bytes, findings), kFine);
   EXPECT_EQ(findings.size, bytes.size() - 60);
@@ -226,7 +226,7 @@ TEST(Datagram, OfAnyBytesIsCheckedWithoutHarm) {
       Octets().parameter(0x62, Octets().text("node")).parameter(0x59, Octets().u32(1).text("a").text("b"));
   mutator.use({datagram({announced(names)}), datagram({offered(names)}), datagram({heartbeat(1, 9), gap(3, 5, 40)}),
                datagram({fragment({})}), datagram({data(kWriter, 3, {0, 1, 0, 0, 1, 2, 3, 4})}),
-               datagram({submessage(0x80, 0, Octets().zeros(56))})});
+               datagram({statistics()})});
   rtps::Findings findings;
   std::size_t refused = 0;
   constexpr std::size_t kCount = 200'000;

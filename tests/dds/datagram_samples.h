@@ -78,6 +78,9 @@ inline Octets submessage(std::uint8_t id, std::uint8_t flags, const Octets& body
   return octets;
 }
 
+/// eProsima's, which end a datagram.
+inline Octets statistics() { return submessage(0x80, 0, Octets().zeros(56)); }
+
 inline Octets bits(std::uint32_t count) { return Octets().u32(count).zeros((count + 31) / 32 * 4); }
 
 inline Octets heartbeat(std::uint64_t first, std::uint64_t last, std::uint32_t writer = kWriter) {

@@ -17,9 +17,9 @@ using dds::testing::heartbeat;
 using dds::testing::kReader;
 using dds::testing::kWriter;
 using dds::testing::Octets;
+using dds::testing::statistics;
 using dds::testing::submessage;
 
-Octets statistics() { return submessage(0x80, 0, Octets().zeros(56)); }
 Octets destination() { return submessage(0x0e, 0, Octets().zeros(12)); }
 
 TEST(AHeartbeat, IsFoundWhereItIsAlone) {
@@ -135,7 +135,7 @@ using AGuardOfASteadyWriter = dds::testing::Guard;
 TEST_F(AGuardOfASteadyWriter, LearnsOfLossesFromWhatReadersAskFor) {
   const Peer peer{1, {127, 0, 0, 1}, 7411};
   const Heartbeat heartbeat{kWriter, kReader};
-  guard_.add_steady_writer(kWriter);
+  guard_.add_writer_of_nodes(kWriter, true);
   for (std::uint64_t number = 1; number <= 2; ++number) {
     guard_.note_sent(datagram({data(kWriter, number, Bytes(8))}), now_);
     guard_.allows(heartbeat, peer, now_);

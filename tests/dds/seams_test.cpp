@@ -18,7 +18,7 @@ struct Coupled {
   Coupled(std::uint32_t region, std::initializer_list<std::uint32_t> near)
       : participant(testing::settings_for(own_domain())), seams(participant, settings(region, near)) {}
 
-  /// It takes the others for lost when a test has gone on for too long.
+  /// The region takes the others for lost when a test has gone on for too long.
   static SeamSettings settings(std::uint32_t region, std::initializer_list<std::uint32_t> near) {
     const auto deadline = std::chrono::steady_clock::now() + testing::kDeadline;
     return {.region = RegionId{region},

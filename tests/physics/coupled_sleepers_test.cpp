@@ -48,7 +48,7 @@ struct Columns {
   CoupledWorlds worlds;
 };
 
-/// What the copy that shares what has not changed, the snapshot and the hash say is what all records say.
+/// The snapshot, the hash, and the copy that shares what has not changed say what all records say.
 void expect_whole(RegionWorld& world, std::size_t& shared, std::size_t& kept) {
   core::ChangedState copy;
   world.copy_all(copy);
