@@ -47,7 +47,7 @@ bodies:
 """)
     files = {"four": "{layout: grid, rows: 2, columns: 2, cell: [30, 30]}", "one": "{count: 1}"}
     for name, regions in files.items():
-        (folder / f"{name}.yaml").write_text(f"scene: balls.yaml\nregions: {regions}\ntime: {{sync: deterministic}}\n")
+        (folder / f"{name}.yaml").write_text(f"scene: balls.yaml\nregions: {regions}\nexchange: aura\ntime: {{sync: deterministic}}\n")
     return {name: folder / f"{name}.yaml" for name in files}
 
 

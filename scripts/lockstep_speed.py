@@ -34,7 +34,7 @@ def scene(folder, program):
                                       f"include:\n{dogs}\n")
     for name, regions in LAYOUTS.items():
         (folder / f"{name}.yaml").write_text(f"scene: pack.yaml\nregions: {regions}\n"
-                                             "time: {sync: deterministic, pace: none, lookahead: 1}\n")
+                                             "exchange: aura\ntime: {sync: deterministic, pace: none, lookahead: 1}\n")
     return {name: folder / f"{name}.yaml" for name in LAYOUTS}
 
 

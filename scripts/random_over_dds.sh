@@ -3,7 +3,7 @@
 # ... and each on one node, and compares the hashes of all states. Prints a line for each; exit 1 if any differs. About 8 s
 # a seed on two cores.
 #   scripts/random_over_dds.sh [--seeds A-B=1-100] [--steps N=400] [--domain N=71] [--out DIR=build/random_over_dds]
-#     [--set KEY=VALUE ...], as for launch
+#     [--set KEY=VALUE ...], as for launch; exchange is aura unless it is set
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -27,7 +27,7 @@ build/release/aurasim-lab experiment scenes --seeds "$seeds" --steps 1 --keep --
 # A world that physics breaks ends with an exit code of its own, and has a report all the same.
 run() { # REPORT LAUNCH REGIONS
   "$aurasim" launch "$2" --headless --steps "$steps" --report "$1" --set time.sync=deterministic --set time.pace=none \
-    --set "dds.domain=$domain" --set "regions=$3" "${changes[@]}" >"$1.log" 2>&1 ||
+    --set "dds.domain=$domain" --set exchange=aura --set "regions=$3" "${changes[@]}" >"$1.log" 2>&1 ||
     [[ -s $1/summary.json ]]
 }
 

@@ -4,11 +4,12 @@
 # the run on one node. Prints a table in Markdown; exit 1 if anything differs. Takes about two hours for everything, a good
 # hour for one network; goes on where it was stopped, as long as DIR is there.
 #   scripts/same_bits.sh [--steps N=1800] [--repetitions N=1] [--network good|bad|both] [--domain N=70]
-#                        [--out DIR=build/same_bits] [SCENE ...]
+#                        [--out DIR=build/same_bits] [--set KEY=VALUE ...] [SCENE ...]
+# Regions meet by auras unless another `exchange` is set; measure that into another DIR.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-steps=1800 repetitions=1 network=both domain=70 out=build/same_bits
+steps=1800 repetitions=1 network=both domain=70 out=build/same_bits changes=(--set exchange=aura)
 while [[ ${1:-} == --* ]]; do
   case $1 in
     --steps) steps=$2 ;;
@@ -16,6 +17,7 @@ while [[ ${1:-} == --* ]]; do
     --network) network=$2 ;;
     --domain) domain=$2 ;;
     --out) out=$2 ;;
+    --set) changes+=(--set "$2") ;;
     *) printf 'same_bits.sh: %s?\n' "$1" >&2; exit 2 ;;
   esac
   shift 2
@@ -34,7 +36,7 @@ run() {
   local report=$1 scene=$2 nodes=$3
   shift 3
   "$aurasim" launch "launch_configs/$scene.yaml" --headless --steps "$steps" --report "$report" \
-    --set time.sync=deterministic --set time.pace=none --set "dds.domain=$domain" --set "$(regions_of "$scene" "$nodes")" "$@" \
+    --set time.sync=deterministic --set time.pace=none --set "dds.domain=$domain" --set "$(regions_of "$scene" "$nodes")" "${changes[@]}" "$@" \
     >"$report.log" 2>&1
 }
 

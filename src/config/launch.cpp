@@ -189,7 +189,8 @@ double Launch::uncertainty() const {
 
 double Launch::exchange_limit_s() const {
   constexpr double kShareOfStep = 0.25;
-  return exchange_limit_given_s.value_or(kShareOfStep * step_s() / (2 * time.substeps + 1));
+  const int exchanges = 2 * time.substeps + 1;  // each takes half a round trip
+  return exchange_limit_given_s.value_or(2 * kShareOfStep * step_s() / exchanges);
 }
 
 bool Launch::redoes() const {

@@ -141,7 +141,7 @@ struct Launch {
   core::RegionMap regions = core::RegionMap::columns(1, 1);
   bool neighbour_distance_is_given = false;
   double neighbour_distance_m = 0;      ///< regions at most this far apart are neighbours; at least the zone
-  Exchange exchange = Exchange::kAura;  ///< kAuto only where both of the others are possible
+  Exchange exchange = Exchange::kAuto;  ///< kAuto only where both of the others are possible
   std::string why_exchange;  ///< reason why `auto` in the file can mean only `exchange`; empty: no such reason
   std::optional<double> exchange_limit_given_s;  ///< exchange_limit; nothing: derived from the steps
   Time time;
@@ -165,7 +165,7 @@ struct Launch {
   /// True when contacts between bodies of several regions are solved by all of these regions.
   bool is_coupled() const { return exchange == Exchange::kCoupled && regions.size() > 1; }
   /// Longest round trip, s, at which `exchange: auto` couples regions. Unless it is given, the exchanges of a step (two
-  /// for each substep, and one) then take a quarter of the step's time.
+  /// for each substep, and one), half a round trip each, then take a quarter of the step's time.
   double exchange_limit_s() const;
   /// True when every state is checked, and computed again where two bodies touched on two hosts.
   bool redoes() const;

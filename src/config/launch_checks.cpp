@@ -126,6 +126,10 @@ std::string problem_of_auras(const Launch& launch) {
       top_speed_aura(launch).rules().instants(), largest_radius_m(launch.scene));
 }
 
+/// Coupled regions all listen to each other, so what a node costs grows with their number: with 16 a step costs each
+/// node twice what auras cost it, with 36 four times.
+constexpr std::size_t kMostCoupledByAuto = 16;
+
 /// Where `exchange: auto` can mean only one of the two, no node has to measure anything.
 void settle_auto(Launch& launch) {
   if (launch.exchange != Exchange::kAuto) return;
@@ -138,6 +142,12 @@ void settle_auto(Launch& launch) {
   } else if (const std::string problem = problem_of_auras(launch); !problem.empty()) {
     launch.exchange = Exchange::kCoupled;
     launch.why_exchange = problem;
+  } else if (launch.regions.size() > kMostCoupledByAuto) {
+    launch.exchange = Exchange::kAura;
+    launch.why_exchange = fmt::format(
+        "there are {} regions, more than the {} that it couples, as coupled regions all "
+        "listen to each other",
+        launch.regions.size(), kMostCoupledByAuto);
   }
 }
 

@@ -299,11 +299,12 @@ const KeysOf<Launch>& launch_keys() {
               choice<Exchange>({{"aura", Exchange::kAura}, {"coupled", Exchange::kCoupled}, {"auto", Exchange::kAuto}}),
               "how bodies of two regions touch. aura: one node gets both in time, which hides the latency between "
               "nodes; coupled: all their nodes solve the contact together, several messages a step, for nodes of "
-              "one host or rack; auto: coupled where it is possible and the nodes measure short round trips when "
-              "they meet (exchange_limit), else aura"),
+              "one host or rack; auto: coupled where it is possible, regions are 16 or fewer and the nodes measure "
+              "short "
+              "round trips when they meet (exchange_limit), else aura"),
           optional("exchange_limit", &Launch::exchange_limit_given_s, number(Range::from_to(1e-6, 10), "s"),
                    "longest round trip between nodes at which exchange: auto means coupled")
-              .otherwise("a quarter of a step's time, divided by its exchanges: 2 time.substeps + 1"),
+              .otherwise("half a step's time, divided by its exchanges: 2 time.substeps + 1"),
           optional("time", &Launch::time, time_keys, "steps, and who waits for whom"),
           optional("tolerances", &Launch::tolerances, tolerances_keys, "what the run promises to itself"),
           optional("aura", &Launch::aura, aura_keys, "how far ahead nodes warn each other"),

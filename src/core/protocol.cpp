@@ -272,11 +272,12 @@ Step Protocol::confirmed() const { return before_alarms(confirmed_but_for_alarms
 
 Step Protocol::earliest_agreement() const { return outbox_.aura.stamp + 1 + round(); }
 
-/// Counts an order that arrived after its state as a violation, and executes it now. Late moves of statics do not count
-/// where states are computed again, and neither does a redo, which always names a state of the past.
+/// Counts an order that arrived after its state as a violation, and executes it now. A move of a static may have been
+/// expected, and keeps its state: who executes it knows whether that changes a state of the past. A redo always names
+/// such a state.
 void Protocol::apply_late(Order& order, Step n) {
-  if (std::holds_alternative<Redo>(order.action)) return;
-  if (order.at_step >= n || (computes_again() && std::holds_alternative<MoveStatic>(order.action))) return;
+  if (order.at_step >= n) return;
+  if (std::holds_alternative<Redo>(order.action) || std::holds_alternative<MoveStatic>(order.action)) return;
   violations_.add({ViolationKind::kLatency, n, vicinity_.self, {}, double(n - order.at_step), 0});
   order.at_step = n;
 }

@@ -1,5 +1,6 @@
 #include "dds/dds_seams.h"
 
+#include <algorithm>
 #include <chrono>
 #include <deque>
 #include <map>
@@ -22,6 +23,8 @@ using namespace std::chrono_literals;
 constexpr auto kLong = 2s;
 /// After so long a wait it is asked whether the node of any region is lost.
 constexpr auto kAsksForAll = 5ms;
+/// From one question whether others stand to the next.
+constexpr auto kAsksWhetherOthersStand = 100ms;
 
 double seconds_since(std::chrono::steady_clock::time_point begun) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
@@ -60,7 +63,7 @@ struct DdsSeams::Impl {
 
   void make_writer(core::RegionId to);
   void wait_for_reader(core::RegionId to);
-  void expect_alive(core::RegionId region, std::chrono::steady_clock::time_point begun) const;
+  void expect_alive(core::RegionId region, std::chrono::steady_clock::time_point begun);
   bool take(core::RegionId from, Peer& peer);
   std::optional<core::RegionId> find_lost() const;
   bool receive();
@@ -77,9 +80,10 @@ struct DdsSeams::Impl {
   core::Generation generation = 0;
   core::Step step = 0;
   ExchangeTimes times;
-  double exchange_s = 0;     ///< of the exchange that goes on
-  bool has_fetched = false;  ///< in the exchange that goes on
-  wire::SeamParcel sample;   // reused
+  double exchange_s = 0;                             ///< of the exchange that goes on
+  bool has_fetched = false;                          ///< in the exchange that goes on
+  std::chrono::steady_clock::time_point last_asked;  ///< whether others stand
+  wire::SeamParcel sample;                           // reused
 };
 
 void DdsSeams::Impl::make_writer(core::RegionId to) {
@@ -100,12 +104,17 @@ void DdsSeams::Impl::wait_for_reader(core::RegionId to) {
   }
 }
 
-/// Throws core::SeamsBroken when a region that is waited for is lost, or after a while any other.
-void DdsSeams::Impl::expect_alive(core::RegionId region, std::chrono::steady_clock::time_point begun) const {
+/// Throws core::SeamsBroken when a region that is waited for is lost, or after a while any other, or when others stand.
+void DdsSeams::Impl::expect_alive(core::RegionId region, std::chrono::steady_clock::time_point begun) {
+  const auto now = std::chrono::steady_clock::now();
   std::optional<core::RegionId> lost;
   if (settings.is_lost(region)) lost = region;
-  if (!lost && std::chrono::steady_clock::now() - begun > kAsksForAll) lost = find_lost();
+  if (!lost && now - begun > kAsksForAll) lost = find_lost();
   if (lost) throw core::SeamsBroken(fmt::format("region {} was lost in the middle of a step", core::value_of(*lost)));
+  if (!settings.why_stand || now - std::max(begun, last_asked) < kAsksWhetherOthersStand) return;
+  last_asked = now;
+  // A node that only the others receive nothing from is lost to them, and they are not lost to it.
+  if (const auto why = settings.why_stand()) throw core::SeamsBroken(*why);
 }
 
 /// Takes the next parcel of this step. Parcels of earlier steps are dropped.

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,9 @@ struct SeamSettings {
   core::Generation life = 0;  ///< see TransportSettings
   /// True when a region's node is known to be lost.
   std::function<bool(core::RegionId)> is_lost;
+  /// Why no node ends the step although none is known to be lost, such as that others wait for the run to go back.
+  /// Nothing: no such reason. Asked several times a second while a parcel is waited for. Empty: there never is one.
+  std::function<std::optional<std::string>()> why_stand = {};
   /// True if a process is the region's node; parcels of others are refused.
   std::function<bool(core::RegionId, const ProcessPrefix&)> is_node;
 };
@@ -49,9 +53,9 @@ class DdsSeams final : public core::SeamMail {
 
   void begin(core::Generation generation, core::Step step) override;
   /// The first parcel to a region that is not near makes the writer, and waits until the region's reader is matched.
-  /// Throws core::SeamsBroken if the region takes no parcels, or its node is lost.
+  /// Throws core::SeamsBroken if the region takes no parcels, its node is lost, or nobody ends the step.
   void post(core::RegionId to, std::span<const std::byte> parcel) override;
-  /// Throws core::SeamsBroken once the region's node is lost.
+  /// Throws core::SeamsBroken once the region's node is lost, or nobody ends the step.
   std::span<const std::byte> fetch(core::RegionId from) override;
 
  private:

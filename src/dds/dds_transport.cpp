@@ -139,6 +139,7 @@ DdsTransport::Impl::Impl(Participant& participant_in, const TransportSettings& s
                              .map_version = settings.map_version,
                              .life = settings.life,
                              .is_lost = {},
+                             .why_stand = settings.why_stand,
                              .is_node = {}};
   seam_settings.is_lost = [this](RegionId region) { return is_lost(region); };
   seam_settings.is_node = [this](RegionId region, const ProcessPrefix& process) {

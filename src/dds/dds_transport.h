@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -39,6 +41,8 @@ struct TransportSettings {
   /// True when that region's node is alive but has been computing one step for long. Waiting to be matched by it then
   /// goes on until that step is done. Empty: no node counts as busy.
   std::function<bool(core::RegionId)> is_busy = {};
+  /// Where regions are coupled: SeamSettings::why_stand.
+  std::function<std::optional<std::string>()> why_stand = {};
 };
 
 /// Samples and bytes (serialized, without RTPS headers) of one topic, all neighbours together.

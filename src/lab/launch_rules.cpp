@@ -10,6 +10,7 @@ ClusterRules launch_rules(const config::Launch& launch, const SetupOf& setup_of)
   rules.neighbour_distance_m = setup.protocol.neighbour_distance_m;
   rules.physics = setup.physics;
   rules.control = setup.control;
+  // No link is measured in virtual time, so `exchange: auto` means aura there.
   rules.coupled = launch.exchange == config::Exchange::kCoupled && launch.regions.size() > 1;
   return rules;
 }

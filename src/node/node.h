@@ -120,9 +120,10 @@ class Node {
   /// Sequence of the newest order that has changed the scene; 0: none.
   std::uint64_t newest_scene_order() const { return scene_.newest_change(); }
   /// Receives a program's setpoints. They are applied wherever the bodies are by then. For statics, the node that takes
-  /// orders makes an order for all nodes; in runs with redo the other nodes expect that order and go by it before it
-  /// comes (core/static_moves.h).
-  core::Heard hear(const core::Setpoints& setpoints);
+  /// orders makes an order for all nodes. Where all are sure to receive the setpoints before their state
+  /// (`known_to_all`), and in runs with redo, the other nodes expect that order and go by it before it comes
+  /// (core/static_moves.h).
+  core::Heard hear(const core::Setpoints& setpoints, bool known_to_all = false);
   void use_meshes(MeshSource source) { scene_.use_meshes(std::move(source)); }
   /// From now on, reports contain what late bodies did before they joined (`states`) and the contact impulses
   /// (`contacts`). The simulation itself stays the same to the bit.
@@ -228,9 +229,9 @@ class Node {
   void execute(const core::Order& order);
   bool can_go(std::span<const core::StaticSetpoint> statics) const;
   bool believes_programs() const;
-  core::Heard hear_of_statics(const core::Setpoints& setpoints, core::Heard heard);
+  core::Heard hear_of_statics(const core::Setpoints& setpoints, core::Heard heard, bool known_to_all);
   void expect(const core::StaticSetpoint& wanted, core::Step at_step, std::uint64_t request);
-  core::Heard order_move(const core::StaticSetpoint& wanted, core::Step at_step, std::uint64_t request);
+  core::Heard order_move(const core::StaticSetpoint& wanted, core::Step at_step, std::uint64_t request, bool at_once);
   const core::Order& give_move(const core::StaticSetpoint& wanted, core::Step at_step, std::uint64_t request);
   void expect_recorded_moves();
   void order_recorded_moves();

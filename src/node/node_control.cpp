@@ -13,13 +13,13 @@ constexpr core::Step kRemembered = 600;
 
 }  // namespace
 
-core::Heard Node::hear(const core::Setpoints& setpoints) {
+core::Heard Node::hear(const core::Setpoints& setpoints, bool known_to_all) {
   if (!can_go(setpoints.statics)) return core::Heard::kRefused;
   const core::Step notice = setup_.protocol.aura.lookahead + 1;
   const core::Heard heard = world_.controls().hear(setpoints, current_step(), notice, scene().joints.size());
   const bool is_late = heard == core::Heard::kLate && !(setpoints.bodies.empty() && setpoints.joints.empty());
   if (is_late) late_words_.note(setpoints.at_step, current_step());
-  return heard == core::Heard::kRefused ? heard : hear_of_statics(setpoints, heard);
+  return heard == core::Heard::kRefused ? heard : hear_of_statics(setpoints, heard, known_to_all);
 }
 
 /// To be called when the reported states from `from` to `until` are computed again, perhaps on other hosts. Setpoints

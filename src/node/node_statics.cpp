@@ -1,6 +1,7 @@
 // How statics follow the setpoints of programs (docs/decisions/0030-a-word-before-its-order.md). The node that takes
 // orders makes an order of each setpoint that it receives. The other nodes go by the setpoints that they receive
-// themselves until the order comes, and compute again if the order differs.
+// themselves until the order comes, if a client's step waits for these setpoints on all nodes, or if the nodes compute
+// again what the order makes different.
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
@@ -33,14 +34,17 @@ bool Node::believes_programs() const {
   return protocol_->computes_again() && statics_.are_believed(current_step());
 }
 
-core::Heard Node::hear_of_statics(const core::Setpoints& setpoints, core::Heard heard) {
+core::Heard Node::hear_of_statics(const core::Setpoints& setpoints, core::Heard heard, bool known_to_all) {
   const bool is_dropped = heard == core::Heard::kLate && setup_.control.late == core::LateSetpoint::kDropped;
   if (is_dropped) return heard;
+  const bool at_once = setpoints.at_step != 0 && (known_to_all || believes_programs());
   for (const core::StaticSetpoint& wanted : setpoints.statics) {
     const std::uint64_t request = request_of(setpoints, wanted.id);
     if (leads()) {
-      heard = std::max(heard, order_move(wanted, setpoints.at_step, request));
-    } else if (heard == core::Heard::kInTime && setpoints.at_step != 0 && believes_programs()) {
+      heard = std::max(heard, order_move(wanted, setpoints.at_step, request, at_once));
+    } else if (at_once && heard == core::Heard::kInTime) {
+      // What the lead refuses as too much in one state is not expected either, where nothing is computed again.
+      if (!protocol_->computes_again() && !statics_.may_order(current_step())) return core::Heard::kRefused;
       expect(wanted, setpoints.at_step, request);
     }
   }
@@ -61,14 +65,14 @@ const core::Order& Node::give_move(const core::StaticSetpoint& wanted, core::Ste
   return give(std::move(order));
 }
 
-/// Makes an order of a static's setpoint. If nodes do not go by received setpoints, or the setpoint names no state, the
-/// move waits until all nodes can have the order.
-core::Heard Node::order_move(const core::StaticSetpoint& wanted, core::Step at_step, std::uint64_t request) {
+/// Makes an order of a static's setpoint. Unless all nodes go by the setpoint itself (`at_once`), the move waits until
+/// all nodes can have the order.
+core::Heard Node::order_move(const core::StaticSetpoint& wanted, core::Step at_step, std::uint64_t request,
+                             bool at_once) {
   const auto is_it = [request](const core::Order& order) { return order.request == request; };
   if (ordered(request) != nullptr || std::ranges::any_of(protocol_->orders_to_come(), is_it))
     return core::Heard::kInTime;
   if (is_changing_ || !statics_.may_order(current_step())) return core::Heard::kRefused;
-  const bool at_once = at_step != 0 && believes_programs();
   // Where regions are coupled, nobody foresees what a static will meet.
   const core::Step agreed = owners_ ? protocol_->earliest_agreement() : protocol_->earliest_effect();
   const core::Step earliest = at_once ? current_step() + 1 : agreed;
@@ -105,9 +109,11 @@ void Node::give_up_expected() {
   if (changed && *changed <= current_step()) doubt(*changed);
 }
 
-/// Doubts state `step`: it was computed with a static in another place than the order puts it.
+/// Doubts state `step`: it was computed with a static in another place than the order puts it. Where it cannot be
+/// computed again, that is a violation.
 void Node::doubt(core::Step step) {
-  if (protocol_->computes_again()) protocol_->doubt(step);
+  if (protocol_->computes_again()) return protocol_->doubt(step);
+  protocol_->report_late_word(step, current_step() + 1 - step);
 }
 
 /// Reports the moves of statics that begin after this state, for the record. Only the lead does so.

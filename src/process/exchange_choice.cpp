@@ -18,7 +18,7 @@ constexpr double kAskedAgain_s = 0.002;   ///< time until a lost parcel of a cou
 
 }  // namespace
 
-double RoundTrip::exchange_s() const { return median_s + lost * kAskedAgain_s; }
+double RoundTrip::counts_s() const { return quartile_s + 2 * lost * kAskedAgain_s; }
 
 RoundTripBook::RoundTripBook(std::size_t regions) {
   for (std::uint32_t r = 1; r < regions; ++r) links_[core::RegionId{r}];
@@ -69,16 +69,15 @@ RoundTrip RoundTripBook::slowest() const {
     std::vector<double> sorted = link.seconds;
     std::ranges::sort(sorted);
     RoundTrip trip{region, std::numeric_limits<double>::infinity(), 0};
-    const std::size_t middle = kQuestions / 2;
-    if (middle < sorted.size()) trip.median_s = sorted[middle];
+    if (sorted.size() > kQuestions / 2) trip.quartile_s = sorted[sorted.size() / 4];
     trip.lost = static_cast<double>(link.open.size()) / static_cast<double>(link.seconds.size() + link.open.size());
-    if (trip.exchange_s() >= slowest.exchange_s()) slowest = trip;
+    if (trip.counts_s() >= slowest.counts_s()) slowest = trip;
   }
   return slowest;
 }
 
 config::Exchange choose_exchange(const RoundTrip& slowest, double limit_s) {
-  return slowest.exchange_s() <= limit_s ? config::Exchange::kCoupled : config::Exchange::kAura;
+  return slowest.counts_s() <= limit_s ? config::Exchange::kCoupled : config::Exchange::kAura;
 }
 
 std::string words_of_choice(config::Exchange chosen, const RoundTrip& slowest, double limit_s) {
@@ -86,8 +85,8 @@ std::string words_of_choice(config::Exchange chosen, const RoundTrip& slowest, d
       "exchange: auto means {}: the slowest round trip, to region {}, takes {:.3g} ms, and {:.0f}% of the messages "
       "were "
       "lost; regions are coupled up to {:.3g} ms (exchange_limit)",
-      chosen == config::Exchange::kCoupled ? "coupled" : "aura", core::value_of(slowest.region), 1e3 * slowest.median_s,
-      100 * slowest.lost, 1e3 * limit_s);
+      chosen == config::Exchange::kCoupled ? "coupled" : "aura", core::value_of(slowest.region),
+      1e3 * slowest.quartile_s, 100 * slowest.lost, 1e3 * limit_s);
 }
 
 std::string words_of_only_choice(const config::Launch& launch) {

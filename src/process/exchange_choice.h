@@ -17,11 +17,13 @@ namespace aurasim::process {
 /// The link between the lead and one region, as measured.
 struct RoundTrip {
   core::RegionId region{};
-  double median_s = 0;  ///< infinite if most questions got no answer
-  double lost = 0;      ///< share of questions without an answer, 0 to 1
+  double quartile_s = 0;  ///< the lower one: what the link takes when both nodes have a processor; infinite if most
+                          ///< questions got no answer
+  double lost = 0;        ///< share of questions without an answer, 0 to 1
 
-  /// Time that one exchange over this link takes on average: a lost message comes after it was asked for again.
-  double exchange_s() const;
+  /// The round trip that counts, s. An exchange takes half of it, on average: a lost message comes after it was asked
+  /// for again.
+  double counts_s() const;
 };
 
 /// Questions of the lead to all other regions, and the answers.
@@ -43,7 +45,7 @@ class RoundTripBook {
   void note_answer(core::RegionId region, std::uint32_t number, Clock::time_point now);
   /// True when enough questions to each region have been answered or are lost.
   bool is_complete(Clock::time_point now) const;
-  /// The link with the longest exchange. Precondition: is_complete().
+  /// The link with the longest round trip. Precondition: is_complete().
   RoundTrip slowest() const;
 
  private:

@@ -61,6 +61,12 @@ void AwaitedWords::add(const messages::RunCommand& step, Time now) {
   if (step.after.number > 0) words_.push_back({step.after, now});
 }
 
+bool AwaitedWords::name(const core::ProgramWord& word) const {
+  return std::ranges::any_of(words_, [&word](const Awaited& awaited) {
+    return awaited.word.program == word.program && awaited.word.number >= word.number;
+  });
+}
+
 bool AwaitedWords::are_here(const HasReceived& has_received, Time now) {
   std::erase_if(words_, [&](const Awaited& awaited) {
     if (has_received(awaited.word)) return true;

@@ -72,6 +72,8 @@ class AwaitedWords {
   /// ended, or this node has taken the region over since. Such a message is given up, so that the nodes of a run go on
   /// together.
   bool are_here(const HasReceived& has_received, Time now);
+  /// True if a message, or a later one of its program, is awaited.
+  bool name(const core::ProgramWord& word) const;
   /// Messages that were given up since the last call.
   std::vector<core::ProgramWord> take_given_up() { return std::exchange(given_up_, {}); }
 

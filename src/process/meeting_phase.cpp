@@ -89,7 +89,7 @@ void MeetingPhase::measure(dds::RoundTrips& trips, RoundTripBook& book) {
   const double limit_s = run_.launch.exchange_limit_s();
   const config::Exchange chosen = choose_exchange(slowest, limit_s);
   spdlog::info("{}", words_of_choice(chosen, slowest, limit_s));
-  if (std::isfinite(slowest.median_s)) run_.status.content().round_trip_ms = 1e3 * slowest.median_s;
+  if (std::isfinite(slowest.quartile_s)) run_.status.content().round_trip_ms = 1e3 * slowest.quartile_s;
   run_.use_exchange(chosen);
 }
 

@@ -237,9 +237,10 @@ void NodeProcess::note_redo(const node::StepReport& report) {
 /// Gives the setpoints that have come to the node; they take effect in the next state. To be called before each state,
 /// and often in between. Every node receives all setpoints.
 void NodeProcess::take_setpoints() {
-  run_.setpoints.take(run_.endpoints.take_setpoints(run_.generation), run_.endpoints.refused_setpoints(),
-                      run_.node->current_step(),
-                      [this](const core::Setpoints& setpoints) { return run_.node->hear(setpoints); });
+  run_.setpoints.take(
+      run_.endpoints.take_setpoints(run_.generation), run_.endpoints.refused_setpoints(), run_.node->current_step(),
+      run_.schedule.holds_at(),
+      [this](const core::Setpoints& setpoints, bool known_to_all) { return run_.node->hear(setpoints, known_to_all); });
 }
 
 /// True if all setpoints that step commands name have been received. No node computes the state before.

@@ -90,6 +90,7 @@ bool NodeRuntime::fence_is_open() { return fence.open(node->protocol().intake().
 dds::TransportSettings NodeRuntime::transport_settings() {
   dds::TransportSettings settings = neighbour_transport(launch, options.region);
   settings.life = life;
+  settings.why_stand = [this] { return death(); };
   settings.is_busy = [this](core::RegionId region) {
     const auto seen = control().statuses().find(region);
     return seen != control().statuses().end() && long_step(seen->second, Clock::now());

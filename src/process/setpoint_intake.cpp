@@ -5,33 +5,50 @@
 #include <spdlog/spdlog.h>
 
 namespace aurasim::process {
+namespace {
+
+/// Limit of the messages kept in a pause. Those beyond it are given to the node at once.
+constexpr std::size_t kMostKept = 4096;
+
+}  // namespace
 
 void SetpointIntake::take(std::span<const core::Setpoints> received, std::uint64_t endpoints_refused, core::Step step,
-                          const Give& give) {
-  for (const core::Setpoints& setpoints : received) {
-    switch (give(setpoints)) {
-      case core::Heard::kInTime:
-        break;
-      case core::Heard::kLate:
-        ++counts_.late;
-        if (!std::exchange(late_logged_, true)) {
-          spdlog::warn(
-              "setpoints for state {} were received in state {}, which is too late: send them for a later state. The "
-              "status counts late setpoints",
-              setpoints.at_step, step);
-        }
-        break;
-      case core::Heard::kRefused:
-        ++not_taken_;
-        break;
+                          std::optional<core::Step> holds_at, const Give& give) {
+  std::vector<core::Setpoints> due = std::exchange(kept_, {});
+  due.insert(due.end(), received.begin(), received.end());
+  for (core::Setpoints& setpoints : due) {
+    const bool waits = holds_at && !setpoints.statics.empty() && setpoints.at_step > *holds_at;
+    if (waits && kept_.size() < kMostKept) {
+      kept_.push_back(std::move(setpoints));
+    } else {
+      give_to_node(setpoints, step, give);
     }
-    ++counts_.received;
   }
   counts_.refused = endpoints_refused + not_taken_ + unbearable_;
   if (counts_.refused > 0 && !std::exchange(refused_logged_, true)) {
     spdlog::warn(
         "setpoints were refused: they cannot be decoded, are too many or too far ahead, or make a body too fast. The "
         "status counts refused setpoints");
+  }
+}
+
+void SetpointIntake::give_to_node(const core::Setpoints& setpoints, core::Step step, const Give& give) {
+  ++counts_.received;
+  switch (give(setpoints, awaited_.name({setpoints.client, setpoints.sequence}))) {
+    case core::Heard::kInTime:
+      break;
+    case core::Heard::kLate:
+      ++counts_.late;
+      if (!std::exchange(late_logged_, true)) {
+        spdlog::warn(
+            "setpoints for state {} were received in state {}, which is too late: send them for a later state. The "
+            "status counts late setpoints",
+            setpoints.at_step, step);
+      }
+      break;
+    case core::Heard::kRefused:
+      ++not_taken_;
+      break;
   }
 }
 

@@ -5,7 +5,9 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "core/setpoint.h"
 #include "messages/control_messages.h"
@@ -24,14 +26,19 @@ class SetpointIntake {
  public:
   using Clock = std::chrono::steady_clock;
   /// Gives setpoints to the node, as node::Node::hear.
-  using Give = std::function<core::Heard(const core::Setpoints&)>;
+  using Give = std::function<core::Heard(const core::Setpoints&, bool known_to_all)>;
 
   /// To be called when another world begins. Setpoints for the world before are not waited for.
-  void begin_world() { awaited_.clear(); }
+  void begin_world() {
+    awaited_.clear();
+    kept_.clear();
+  }
   /// Gives `received` to the node, which is in state `step`. `endpoints_refused`: number of messages that the DDS
-  /// endpoints have refused so far.
+  /// endpoints have refused so far. `holds_at`: the state in which the run pauses; nothing: no pause. Setpoints of
+  /// statics for states after a pause are kept until a command ends it. If that is a step that names them, all nodes
+  /// receive them before they compute on, and the node is told so.
   void take(std::span<const core::Setpoints> received, std::uint64_t endpoints_refused, core::Step step,
-            const Give& give);
+            std::optional<core::Step> holds_at, const Give& give);
   /// Counts setpoints that were refused because a body would have become too fast.
   void note_unbearable(std::uint64_t count) { unbearable_ += count; }
 
@@ -43,7 +50,10 @@ class SetpointIntake {
   const SetpointCounts& counts() const { return counts_; }
 
  private:
+  void give_to_node(const core::Setpoints& setpoints, core::Step step, const Give& give);
+
   AwaitedWords awaited_;
+  std::vector<core::Setpoints> kept_;  ///< with statics, for states after the pause
   SetpointCounts counts_;
   std::uint64_t not_taken_ = 0, unbearable_ = 0;
   bool late_logged_ = false, refused_logged_ = false;  ///< the message about them has been logged

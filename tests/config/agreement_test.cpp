@@ -45,8 +45,8 @@ TEST_F(Agreement, IsTheSameForTheSameContentElsewhere) {
 }
 
 TEST_F(Agreement, DependsOnTheLimitOfTheExchangeOnlyWhereItDecides) {
-  EXPECT_EQ(of({"exchange_limit=0.001"}), of());
-  EXPECT_NE(of({"exchange=auto", "exchange_limit=0.001"}), of({"exchange=auto"}));
+  EXPECT_NE(of({"exchange_limit=0.001"}), of());
+  EXPECT_EQ(of({"exchange=aura", "exchange_limit=0.001"}), of({"exchange=aura"}));
 }
 
 TEST_F(Agreement, DoesNotDependOnHowTheRunIsConnectedAndWatched) {
@@ -62,7 +62,7 @@ TEST_F(Agreement, DiffersWithEverythingThatIsComputed) {
   std::set<std::uint64_t> seen = {of()};
   const std::vector<std::string> changes = {
       "exchange=coupled",
-      "exchange=auto",
+      "exchange=aura",
       "regions.count=3",
       "regions={layout: columns, count: 3, width: 41}",
       "regions.neighbour_distance=30",

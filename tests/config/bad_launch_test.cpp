@@ -135,7 +135,7 @@ const std::vector<BadCase> kBadLaunches = {
      kTwo + "time: {lookahead: [1]}\n",
      {"launch.yaml:3:19: time.lookahead: found a list of 1, allowed: auto, or an integer from 1 to 64"}},
     {"LookaheadFromTolerancesTooLong",
-     kTwo + "tolerances: {frame: 9}\n",
+     kTwo + "exchange: aura\ntolerances: {frame: 9}\n",
      {"launch.yaml:2:10: regions: tolerances and step_hz give a lookahead of 541 steps, allowed: at most 64"}},
     {"SpeedToleranceZero",
      kTwo + "tolerances: {speed: 0, latency: -1, frame: 0}\n",

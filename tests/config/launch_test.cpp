@@ -19,6 +19,7 @@ TEST(LaunchFile, EverythingButSceneAndRegionsHasADefault) {
   EXPECT_EQ(launch.tolerances.speed_m_s, 32);
   EXPECT_EQ(launch.tolerances.latency_s, 0.002);
   EXPECT_EQ(launch.tolerances.frame_s, 0.015);
+  EXPECT_EQ(launch.exchange, Exchange::kAuto);
   EXPECT_EQ(launch.aura.radius, core::AuraKind::kSwept);
   EXPECT_EQ(launch.uncertainty(), 0.5);
   EXPECT_EQ(launch.physics.solver, "soft_step");
@@ -30,7 +31,7 @@ TEST(LaunchFile, EverythingButSceneAndRegionsHasADefault) {
   EXPECT_EQ(launch.observe.tick_hz, 20);
 }
 
-TEST(LaunchFile, ExchangeAutoIsSettledOnlyWhereOneOfTheTwoIsImpossible) {
+TEST(LaunchFile, ExchangeAutoIsSettledWhereOnlyOneOfTheTwoIsPossibleOrMakesSense) {
   const Workspace workspace;
   const std::string automatic = std::string(kSmallLaunch) + "exchange: auto\n";
   const Launch open = workspace.launch(automatic);
@@ -38,6 +39,10 @@ TEST(LaunchFile, ExchangeAutoIsSettledOnlyWhereOneOfTheTwoIsImpossible) {
   EXPECT_FALSE(open.is_coupled());
   EXPECT_EQ(open.why_exchange, "");
   EXPECT_EQ(workspace.launch(automatic, {"regions.count=1"}).exchange, Exchange::kAura);
+  EXPECT_EQ(workspace.launch(automatic, {"regions.count=16"}).exchange, Exchange::kAuto);
+  EXPECT_EQ(workspace.launch(automatic, {"regions.count=17"}).exchange, Exchange::kAura)
+      << "coupled, all listen to all";
+  EXPECT_TRUE(workspace.launch(automatic, {"regions.count=17", "exchange=coupled"}).is_coupled());
   const std::vector<std::vector<std::string>> cases = {
       {"physics.solver=sequential_impulse"},
       {"time.sync=free_running"},
@@ -58,8 +63,8 @@ TEST(LaunchFile, ExchangeAutoIsSettledOnlyWhereOneOfTheTwoIsImpossible) {
 
 TEST(LaunchFile, ExchangeLimitIsGivenOrLeavesTheExchangesOfAStepAQuarterOfItsTime) {
   const Workspace workspace;
-  EXPECT_NEAR(workspace.launch(kSmallLaunch, {"time.substeps=8"}).exchange_limit_s(), 1.0 / 60 / 4 / 17, 1e-12);
-  EXPECT_NEAR(workspace.launch(kSmallLaunch, {"time.substeps=4"}).exchange_limit_s(), 1.0 / 60 / 4 / 9, 1e-12);
+  EXPECT_NEAR(workspace.launch(kSmallLaunch, {"time.substeps=8"}).exchange_limit_s(), 1.0 / 60 / 2 / 17, 1e-12);
+  EXPECT_NEAR(workspace.launch(kSmallLaunch, {"time.substeps=4"}).exchange_limit_s(), 1.0 / 60 / 2 / 9, 1e-12);
   EXPECT_EQ(workspace.launch(kSmallLaunch, {"exchange_limit=0.002"}).exchange_limit_s(), 0.002);
 }
 

@@ -49,7 +49,8 @@ TEST(ShippedFiles, ScenesAreTheSameOnAnyNumberOfNodes) {
   for (const auto& file : yaml_files_in(kLaunchConfigs)) {
     SCOPED_TRACE(file);
     const auto world_of = [&](const std::string& count) {
-      Launch launch = read_launch(file, {"regions={layout: columns, width: 80, count: " + count + "}"});
+      Launch launch =
+          read_launch(file, {"regions={layout: columns, width: 80, count: " + count + "}", "exchange=aura"});
       launch.regions = core::RegionMap::columns(1, 1);
       return launch.agreement();
     };

@@ -82,5 +82,32 @@ TEST(Seams, LoseNoParcelToARegionThatIsNotNear) {
   EXPECT_TRUE(are_matched(left, 2));
 }
 
+/// Others may have given the step up where this node has lost nobody: it is not heard any more, and hears all.
+TEST(Seams, AreBrokenWhenOthersStand) {
+  SeamSettings settings = Coupled::settings(0, {1});
+  std::atomic<bool> others_stand = false;
+  settings.why_stand = [&]() -> std::optional<std::string> {
+    return others_stand ? std::optional("region 1 stands") : std::nullopt;
+  };
+  Coupled right(1, {0});
+  Participant participant(testing::settings_for(own_domain()));
+  DdsSeams left(participant, settings);
+  ASSERT_TRUE(testing::holds_in_time([&] { return left.unmatched(RegionId{1}).empty() && are_matched(right, 0); }));
+  left.begin(0, 1), right.seams.begin(0, 1);
+  right.post(0, 7);
+  EXPECT_EQ(left.fetch(RegionId{1}).size(), 100U);
+  auto waiting = std::async(std::launch::async, [&]() -> std::string {
+    try {
+      left.fetch(RegionId{1});
+    } catch (const core::SeamsBroken& broken) {
+      return broken.what();
+    }
+    return "a parcel that nobody has sent";
+  });
+  EXPECT_EQ(waiting.wait_for(300ms), std::future_status::timeout) << "while the others compute";
+  others_stand = true;
+  EXPECT_EQ(waiting.get(), "region 1 stands");
+}
+
 }  // namespace
 }  // namespace aurasim::dds

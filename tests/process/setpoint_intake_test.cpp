@@ -17,7 +17,7 @@ class SetpointIntakeTest : public ::testing::Test {
   void take(std::vector<core::Heard> answers, std::uint64_t endpoints_refused = 0) {
     const std::vector<core::Setpoints> received(answers.size());
     std::size_t next = 0;
-    intake_.take(received, endpoints_refused, 10, [&](const core::Setpoints&) { return answers.at(next++); });
+    intake_.take(received, endpoints_refused, 10, {}, [&](const core::Setpoints&, bool) { return answers.at(next++); });
   }
   bool may_compute(bool is_here, SetpointIntake::Clock::time_point now) {
     return intake_.has_all_awaited([is_here](const core::ProgramWord&) { return is_here; }, 11, now);
@@ -65,6 +65,53 @@ TEST_F(SetpointIntakeTest, AnotherWorldWaitsForNothing) {
   await(3);
   intake_.begin_world();
   EXPECT_TRUE(may_compute(false, kBegin));
+}
+
+/// What the node of a paused run is given: the numbers of messages of program 5, and whether all nodes know them.
+class SetpointsInAPause : public SetpointIntakeTest {
+ protected:
+  static core::Setpoints message(std::uint64_t number, core::Step at_step, bool of_static) {
+    core::Setpoints said;
+    said.client = 5, said.sequence = number, said.at_step = at_step;
+    if (of_static) said.statics.push_back({core::StaticId{0}, {}, 1});
+    return said;
+  }
+  std::vector<std::pair<std::uint64_t, bool>> give(const std::vector<core::Setpoints>& received,
+                                                   std::optional<core::Step> holds_at) {
+    std::vector<std::pair<std::uint64_t, bool>> given;
+    intake_.take(received, 0, 10, holds_at, [&](const core::Setpoints& said, bool known_to_all) {
+      given.emplace_back(said.sequence, known_to_all);
+      return core::Heard::kInTime;
+    });
+    return given;
+  }
+  using Given = std::vector<std::pair<std::uint64_t, bool>>;
+};
+
+TEST_F(SetpointsInAPause, OfStaticsAreKeptForTheStepThatNamesThem) {
+  EXPECT_EQ(give({message(1, 11, false), message(2, 11, true)}, 10), (Given{{1, false}}));
+  EXPECT_EQ(give({}, 10), Given());
+  await(2);
+  EXPECT_EQ(give({}, 11), (Given{{2, true}}));
+  EXPECT_EQ(intake_.counts().received, 2U);
+}
+
+TEST_F(SetpointsInAPause, ThatComeAfterTheStepThatNamesThemAreKnownToAllToo) {
+  await(2);
+  EXPECT_FALSE(may_compute(false, kBegin + 1ms));
+  EXPECT_EQ(give({message(2, 11, true), message(3, 11, true)}, 11), (Given{{2, true}, {3, false}}))
+      << "no node waits for the third";
+}
+
+TEST_F(SetpointsInAPause, AreNotKnownToAllWhereAnotherProgramEndsThePause) {
+  EXPECT_EQ(give({message(2, 11, true)}, 10), Given());
+  EXPECT_EQ(give({}, {}), (Given{{2, false}}));
+}
+
+TEST_F(SetpointsInAPause, AreDroppedWithTheWorldThatTheyWereFor) {
+  EXPECT_EQ(give({message(2, 11, true)}, 10), Given());
+  intake_.begin_world();
+  EXPECT_EQ(give({}, {}), Given());
 }
 
 }  // namespace

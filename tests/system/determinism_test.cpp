@@ -68,7 +68,7 @@ TEST_F(Determinism, WithoutAurasARedoGivesTheBitsOfTheCentralOne) {
 /// same. The dominoes fall over the border in states 700 to 900.
 TEST_F(Determinism, InBoundedModeTheTowerAndTheDominoesFallAsInOneWorld) {
   for (const std::string scene : {"tower", "domino_line"}) {
-    const Words bounded = {"time.sync=bounded"};
+    const Words bounded = {"time.sync=bounded", "exchange=aura"};
     const std::string two =
         hashes(scene + "_2", scene, 900,
                bounded + Words{"regions={layout: columns, count: 2, width: 40, neighbour_distance: 1000}"});

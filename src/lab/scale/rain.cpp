@@ -25,6 +25,7 @@ std::vector<std::string> Rain::overrides() const {
   std::vector<std::string> all = {
       "regions=" + regions.yaml(),
       "scene.layout=" + world.yaml(),
+      "exchange=aura",
       "aura.radius=" + aura,
       fmt::format("aura.uncertainty={}", uncertainty),
       "physics.solver=soft_step",
