@@ -16,6 +16,7 @@ void add_schema(CLI::App& program, command_line::Action& action);
 void add_export(CLI::App& program, command_line::Action& action);
 void add_import(CLI::App& program, command_line::Action& action);
 void add_keys(CLI::App& program, command_line::Action& action);
+void add_hub(CLI::App& program, command_line::Action& action);
 void add_node(CLI::App& program, command_line::Action& action);
 void add_spare(CLI::App& program, command_line::Action& action);
 void add_launch(CLI::App& program, command_line::Action& action);

@@ -38,6 +38,7 @@ std::unique_ptr<CLI::App> make_program(command_line::Action& action) {
   add_node(*program, action);
   add_launch(*program, action);
   add_spare(*program, action);
+  add_hub(*program, action);
   add_top(*program, action);
   add_echo(*program, action);
   add_cut(*program, action);

@@ -54,6 +54,23 @@ void check_each(const Field& list, std::string_view allowed, bool (*is_good)(con
   }
 }
 
+/// The hub of discovery: neighbours is found on loopback only, and there is no key for it.
+void check_neighbours(const Field& field, const Dds& dds) {
+  if (dds.discovery != Discovery::kNeighbours) return;
+  const Fields fields(field);
+  const auto is_loopback = [](const std::string& address) { return address.starts_with("127."); };
+  if (!std::ranges::all_of(dds.interfaces, is_loopback)) {
+    fields["interfaces"].refuse(
+        "addresses of loopback with discovery: neighbours, which is for one host only; on several hosts use multicast, "
+        "peers or server");
+  }
+  if (!dds.security.empty()) {
+    fields["security"].refuse("nothing with discovery: neighbours, whose hub has no key; with keys use multicast, peers "
+                              "or server");
+  }
+  if (fields.has("peers")) fields["peers"].refuse("nothing with discovery: neighbours, whose hub introduces the peers");
+}
+
 void read_dds(const Field& field, const std::filesystem::path& folder, Dds& dds) {
   dds.profiles = usual_profiles(folder);
   if (!field.given()) return;
@@ -79,7 +96,9 @@ void read_dds(const Field& field, const std::filesystem::path& folder, Dds& dds)
   if (dds.impair.bandwidth_B_s && *dds.impair.bandwidth_B_s > 0 && *dds.impair.bandwidth_B_s < 1) {
     Fields(fields["impair"])["bandwidth"].refuse("0, or at least 1 B/s");
   }
-  if (dds.discovery != Discovery::kMulticast && dds.peers.empty() && !fields.has("peers")) {
+  check_neighbours(field, dds);
+  const bool needs_peers = dds.discovery == Discovery::kPeers || dds.discovery == Discovery::kServer;
+  if (needs_peers && dds.peers.empty() && !fields.has("peers")) {
     field.complain("needs peers, allowed: peers: [ADDRESS, ...] with discovery: peers or server");
   }
   fields.close();

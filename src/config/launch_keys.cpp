@@ -160,9 +160,11 @@ const KeysOf<Dds>& dds_keys() {
           optional(
               "discovery", &Dds::discovery,
               choice<Discovery>(
-                  {{"multicast", Discovery::kMulticast}, {"peers", Discovery::kPeers}, {"server", Discovery::kServer}}),
+                  {{"multicast", Discovery::kMulticast}, {"peers", Discovery::kPeers}, {"server", Discovery::kServer},
+                   {"neighbours", Discovery::kNeighbours}}),
               "multicast; peers: announcements go to the addresses in `peers`; server: Fast DDS discovery servers "
-              "at `peers`"),
+              "at `peers`; neighbours: a hub (`aurasim hub`; `launch` starts one) introduces the nodes that need each "
+              "other, for many nodes on one host"),
           optional("interfaces", &Dds::interfaces, list(1, 256, text("an address")),
                    "own addresses that may carry traffic; [\"*\"]: all of them. The default never leaves the machine"),
           optional("peers", &Dds::peers, list(1, 256, text("an address")),

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastrtps/utils/IPLocator.h>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <fmt/format.h>
 
@@ -53,6 +54,20 @@ void switch_intraprocess_delivery_off() {
   eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(library);
 }
 
+MeetingPoint meeting_point(const eprosima::fastrtps::rtps::Locator_t& locator) {
+  const auto* const octets = eprosima::fastrtps::rtps::IPLocator::getIPv4(locator);
+  MeetingPoint point;
+  for (int i = 0; i < 4; ++i) point.address = point.address << 8 | octets[i];
+  point.port = static_cast<std::uint16_t>(locator.port);
+  return point;
+}
+
+rtps::WireGuid wire_guid(const Guid& endpoint) {
+  rtps::WireGuid guid{prefix_of(endpoint.guidPrefix)};
+  for (const unsigned char octet : endpoint.entityId.value) guid.entity = guid.entity << 8 | octet;
+  return guid;
+}
+
 template <class Generated>
 TypeSupport guarded(bool announces) {
   return TypeSupport(new messages::GuardedType<Generated>(announces));
@@ -64,7 +79,9 @@ Domain::Domain(const Settings& settings)
     : profiles_(settings.profiles),
       guard_(std::make_shared<rtps::DatagramGuard>()),
       speakers_(guard_),
-      nodes_(settings.nodes) {
+      nodes_(settings.nodes),
+      speaks_by_hub_(settings.discovery == config::Discovery::kNeighbours && settings.introductions == nullptr),
+      introductions_(settings.introductions) {
   DomainParticipantQos qos = participant_qos(profiles_, settings);
   datagram_B_ = largest_datagram_B(qos);
   has_keys_ = settings.keys.has_value();
@@ -80,7 +97,8 @@ Domain::Domain(const Settings& settings)
     delay_line_ =
         std::make_shared<DelayLine>(impairment, settings.impairment_stream, metatraffic_ports(qos, settings.domain));
   }
-  install(qos, {guard_, delay_line_, shortest_between_announcements(finds_all_itself ? settings.nodes : 1)});
+  install(qos, {guard_, delay_line_, shortest_between_announcements(finds_all_itself ? settings.nodes : 1),
+                introductions_});
   switch_intraprocess_delivery_off();
   messages::set_type_tables_up();
   if (settings.keys) refusals_.emplace(settings.report_refusal);
@@ -139,6 +157,20 @@ eprosima::fastdds::dds::Topic& Domain::topic(TopicId id) {
 void Domain::on_participant_discovery(eprosima::fastdds::dds::DomainParticipant*,
                                       eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) {
   peer_keys_.note(info);
+  using Info = eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
+  const ProcessPrefix& process = info.info.m_guid.guidPrefix;
+  const bool is_gone = info.status == Info::REMOVED_PARTICIPANT || info.status == Info::DROPPED_PARTICIPANT;
+  const auto& data = info.info.m_userData;
+  if (speaks_by_hub_ && std::ranges::equal(data, kHubUserData)) {
+    is_gone ? speakers_.remove_hub(process) : speakers_.add_hub(process);
+    wakeup_.notify();
+  }
+  if (introductions_ != nullptr) {
+    const auto& points = info.info.metatraffic_locators.unicast;
+    is_gone ? introductions_->remove(prefix_of(process))
+            : introductions_->add(prefix_of(process), points.empty() ? MeetingPoint() : meeting_point(points[0]));
+    wakeup_.notify();
+  }
   if (refusals_) SecurityLog::instance().note(info);
 }
 
@@ -150,14 +182,23 @@ void Domain::onParticipantAuthentication(eprosima::fastdds::dds::DomainParticipa
   SecurityLog::instance().refused(info.guid);
 }
 
+void Domain::introduce(const rtps::WireGuid& endpoint, bool is_writer, std::string topic,
+                       std::vector<std::string> partitions) {
+  if (introductions_ == nullptr) return;
+  introductions_->add({endpoint, is_writer, std::move(topic), std::move(partitions)});
+  wakeup_.notify();
+}
+
 void Domain::on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant*,
                                     eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) {
   using Info = eprosima::fastrtps::rtps::WriterDiscoveryInfo;
   if (info.status == Info::REMOVED_WRITER) {
     directory_.remove(info.info.guid());
+    if (introductions_ != nullptr) introductions_->remove(wire_guid(info.info.guid()));
     return speakers_.remove(info.info.guid());
   }
   speakers_.add(info.info.guid(), info.info.m_qos.m_partition.names());
+  introduce(wire_guid(info.info.guid()), true, info.info.topicName().c_str(), info.info.m_qos.m_partition.names());
   const auto& data = info.info.m_qos.m_userData;
   if (const auto region = region_in({data.begin(), data.end()}); region >= 0) {
     directory_.add(info.info.guid(), static_cast<core::RegionId>(region));
@@ -167,8 +208,10 @@ void Domain::on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant*,
 void Domain::on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant*,
                                      eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) {
   if (info.status == eprosima::fastrtps::rtps::ReaderDiscoveryInfo::REMOVED_READER) {
+    if (introductions_ != nullptr) introductions_->remove(wire_guid(info.info.guid()));
     return directory_.remove(info.info.guid());
   }
+  introduce(wire_guid(info.info.guid()), false, info.info.topicName().c_str(), info.info.m_qos.m_partition.names());
   const auto& data = info.info.m_qos.m_userData;
   if (const auto region = region_in({data.begin(), data.end()}); region >= 0) {
     directory_.add(info.info.guid(), static_cast<core::RegionId>(region));

@@ -15,6 +15,7 @@
 #include <fastdds/dds/topic/Topic.hpp>
 
 #include "dds/delay_line.h"
+#include "dds/introductions.h"
 #include "dds/liveliness_asserter.h"
 #include "dds/peer_keys.h"
 #include "dds/profiles.h"
@@ -47,6 +48,10 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   Profiles& profiles() { return profiles_; }
   Directory& directory() { return directory_; }
   Speakers& speakers() { return speakers_; }
+  /// True if messages to all go by a hub.
+  bool speaks_by_hub() const { return speaks_by_hub_; }
+  /// True if a hub is there, or none is needed.
+  bool has_way_to_all() const { return !speaks_by_hub_ || speakers_.has_hub(); }
   /// Which of the other participants use keys.
   const PeerKeys& peer_keys() const { return peer_keys_; }
   /// True when no datagram leaves this host.
@@ -81,6 +86,8 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   void on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
                                eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
   void register_types(bool announces);
+  void introduce(const rtps::WireGuid& endpoint, bool is_writer, std::string topic,
+                 std::vector<std::string> partitions);
 
   Wakeup wakeup_;
   Profiles profiles_;
@@ -92,6 +99,8 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   std::size_t nodes_ = 1;
   std::uint32_t datagram_B_ = 0;
   bool has_keys_ = false;
+  bool speaks_by_hub_ = false;
+  std::shared_ptr<Introductions> introductions_;  ///< only in a hub
   bool loopback_only_ = false;
   bool believes_silence_ = true;
   std::optional<SecurityLog::Hearing> refusals_;  ///< receives refusals by keys; only in a run with keys

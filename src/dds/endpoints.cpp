@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "dds/many_nodes.h"
+#include "messages/guarded_type.h"
 #include "rtps/datagram_guard.h"
 
 namespace aurasim::dds {
@@ -84,6 +85,26 @@ void be_patient(eprosima::fastrtps::Duration_t& time, std::chrono::nanoseconds s
     time = eprosima::fastrtps::Duration_t(std::chrono::duration<double>(shortest).count());
 }
 
+/// Partitions of a writer: those of its messages to all are the hub's, if there is one.
+std::vector<std::string> by_hub_if_needed(const Domain& domain, const EndpointSpec& spec) {
+  std::vector<std::string> partitions = spec.partitions;
+  if (!domain.speaks_by_hub()) return partitions;
+  for (std::string& partition : partitions) {
+    if (topics::goes_by_hub(spec.topic, partition)) partition = topics::to_hub(partition);
+  }
+  return partitions;
+}
+
+/// A writer of a hub has an instance for each source of its samples, and any number of sources.
+void make_room_for_sources(DataWriterQos& qos) {
+  auto& limits = qos.resource_limits();
+  limits.max_instances = static_cast<std::int32_t>(messages::kMostKeys) + 1;
+  limits.max_samples_per_instance = qos.history().depth;
+  constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
+  limits.max_samples =
+      static_cast<std::int32_t>(std::min(kMost, std::int64_t{limits.max_instances} * limits.max_samples_per_instance));
+}
+
 [[noreturn]] void throw_not_created(const char* what, const EndpointSpec& spec) {
   throw DdsError(fmt::format("cannot create the {} of topic {} in partition {} (Fast DDS says more on standard error)",
                              what, name_of(spec.topic), fmt::join(spec.partitions, ", ")));
@@ -100,7 +121,7 @@ Writer::Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
   auto& topic = domain.topic(spec.topic);
   const auto stopped = domain.guard().delivery().stop();
   PublisherQos publisher_qos;
-  set_partitions(publisher_qos.partition(), spec.partitions);
+  set_partitions(publisher_qos.partition(), by_hub_if_needed(domain, spec));
   publisher_ = domain.participant().create_publisher(publisher_qos);
   if (publisher_ == nullptr) {
     throw_not_created("publisher", spec);
@@ -109,7 +130,9 @@ Writer::Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
   if (spec.region) {
     qos.user_data().setValue(user_data_of(*spec.region));
   }
-  if (part_fields_ != nullptr) make_room_for_parts(qos, domain);
+  const bool needs_room = !spec.is_of_hub || spec.topic == TopicId::kCheckpoint;
+  if (part_fields_ != nullptr && needs_room) make_room_for_parts(qos, domain);
+  if (spec.is_of_hub) make_room_for_sources(qos);
   be_patient(qos.reliable_writer_qos().times.heartbeatPeriod, shortest_heartbeat(spec.topic, domain.nodes()));
   writer_ = publisher_->create_datawriter(&topic, qos, &watch_, StatusMask::publication_matched());
   if (writer_ == nullptr) {
@@ -179,6 +202,21 @@ WriteResult Writer::write_sample(void* sample) {
   if (writer_->write(sample, HANDLE_NIL) != ReturnCode_t::RETCODE_OK) {
     result = WriteResult::kSentAtSecondTry;
     if (writer_->write(sample, HANDLE_NIL) != ReturnCode_t::RETCODE_OK) return WriteResult::kFailed;
+  }
+  written_ns_.store(LivelinessAsserter::now_ns(), std::memory_order_relaxed);
+  return result;
+}
+
+WriteResult Writer::pass_on(const PassedSample& passed) {
+  eprosima::fastrtps::rtps::WriteParams params;
+  params.related_sample_identity().writer_guid(passed.writer);
+  params.related_sample_identity().sequence_number(
+      eprosima::fastrtps::rtps::SequenceNumber_t(static_cast<std::uint64_t>(passed.number)));
+  params.source_timestamp().from_ns(passed.sent_ns);
+  WriteResult result = WriteResult::kSent;
+  if (!writer_->write(passed.sample.get(), params)) {
+    result = WriteResult::kSentAtSecondTry;
+    if (!writer_->write(passed.sample.get(), params)) return WriteResult::kFailed;
   }
   written_ns_.store(LivelinessAsserter::now_ns(), std::memory_order_relaxed);
   return result;
@@ -282,16 +320,40 @@ bool Reader::take(void* sample, Origin* origin) {
   SampleInfo info;
   while (reader_->take_next_sample(sample, &info) == ReturnCode_t::RETCODE_OK) {
     if (!info.valid_data) continue;
-    const Guid writer = eprosima::fastrtps::rtps::iHandle2GUID(info.publication_handle);
+    Guid writer = eprosima::fastrtps::rtps::iHandle2GUID(info.publication_handle);
+    const bool by_hub = domain_.speaks_by_hub() && domain_.speakers().is_hub(writer.guidPrefix);
+    if (by_hub) {
+      const auto& origin_of = info.related_sample_identity;
+      writer = origin_of.writer_guid();
+      if (!by_hub_.is_news(writer, static_cast<std::int64_t>(origin_of.sequence_number().to64long()))) continue;
+    }
     if (domain_.speakers().shuns(writer.guidPrefix)) continue;
     if (origin != nullptr) {
       origin->writer = writer;
+      origin->by_hub = by_hub;
       origin->clock_ahead = std::chrono::nanoseconds(info.source_timestamp.to_ns() - info.reception_timestamp.to_ns());
     }
     const auto part = part_fields_ == nullptr ? std::nullopt : part_fields_->get(sample);
     if (!part || put_together(sample, *part, writer)) return true;
   }
   return false;
+}
+
+bool Reader::take_sample(PassedSample& taken) {
+  SampleInfo info;
+  while (reader_->take_next_sample(taken.sample.get(), &info) == ReturnCode_t::RETCODE_OK) {
+    if (!info.valid_data) continue;
+    taken.writer = eprosima::fastrtps::rtps::iHandle2GUID(info.publication_handle);
+    taken.number = static_cast<std::int64_t>(info.sample_identity.sequence_number().to64long());
+    taken.sent_ns = info.source_timestamp.to_ns();
+    std::copy_n(&info.instance_handle.value[0], taken.key.size(), taken.key.begin());
+    return true;
+  }
+  return false;
+}
+
+std::shared_ptr<void> Reader::make_sample() {
+  return {type_->createData(), [type = type_](void* sample) mutable { type->deleteData(sample); }};
 }
 
 /// Adds a part. True when its message is whole: then `sample` is the message.

@@ -15,6 +15,8 @@
 
 #include "core/ids.h"
 #include "dds/domain.h"
+#include "dds/kept_samples.h"
+#include "dds/seen_numbers.h"
 #include "dds/watch.h"
 #include "messages/part_fields.h"
 #include "messages/wire_error.h"
@@ -29,6 +31,9 @@ struct EndpointSpec {
   /// For a reader: one that asks for no history (volatile) becomes best effort and gets no retransmissions, whatever
   /// its profile says.
   bool best_effort_if_volatile = false;
+  /// For the endpoints of a hub: samples of many sources, which are passed on as they come. The history needs no room for
+  /// parts of a message that the next one replaces.
+  bool is_of_hub = false;
 };
 
 /// Spec of an endpoint of `region`, or of nobody's, for the messages of a topic that go this route.
@@ -50,6 +55,8 @@ class Writer {
   /// Writes one message. `sample` points to the generated type of the topic. A message that does not fit into a
   /// datagram is written in parts (parts.h).
   WriteResult write(void* sample);
+  /// Writes a sample of another writer, with its number and time. For a hub.
+  WriteResult pass_on(const PassedSample& passed);
   /// Drops all samples from the history, also those that some readers have not acknowledged. Call it before write()
   /// where the newest message of a writer replaces all earlier ones.
   void forget_all();
@@ -91,6 +98,7 @@ class Writer {
 /// Origin of a received sample.
 struct Origin {
   Guid writer;
+  bool by_hub = false;  ///< it came by a hub: this process need not know the writer's process
   /// How far the writer's wall clock is ahead of the own one, less the transit time: its time of sending minus our time
   /// of receipt.
   std::chrono::nanoseconds clock_ahead{0};
@@ -107,6 +115,10 @@ class Reader {
   /// Takes the next message into `sample` (the generated type). False when there is none. Of a message in parts the
   /// origin is that of the last part.
   bool take(void* sample, Origin* origin = nullptr);
+  /// Takes the next sample, a message or a part of one, into `taken.sample`. For a hub.
+  bool take_sample(PassedSample& taken);
+  /// A sample of the topic's generated type.
+  std::shared_ptr<void> make_sample();
   /// Messages lost since the last call, because parts of them are missing or do not fit together.
   std::uint64_t take_lost() { return std::exchange(lost_, 0); }
 
@@ -130,6 +142,7 @@ class Reader {
   eprosima::fastdds::dds::TypeSupport type_;
   const messages::PartFields* part_fields_ = nullptr;  ///< null: the topic's messages never come in parts
   std::uint64_t lost_ = 0;
+  SeenNumbers by_hub_;
   ReaderWatch watch_;
   eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;
   eprosima::fastdds::dds::DataReader* reader_ = nullptr;

@@ -89,7 +89,7 @@ void NodeRoster::note(messages::Status fresh, const Origin& origin) {
   std::vector<Received>& of_region = received_[fresh.region];
   auto found = std::ranges::find(of_region, origin.writer, &Received::writer);
   if (found == of_region.end()) {
-    found = of_region.insert(found, {origin.writer, {}, {}});
+    found = of_region.insert(found, {origin.writer, origin.by_hub, {}, {}});
   }
   found->seen.status = std::move(fresh);
   found->seen.seen = std::chrono::steady_clock::now();
@@ -138,6 +138,7 @@ void NodeRoster::choose_publisher(RegionId region, const std::vector<Received>& 
 }
 
 bool NodeRoster::is_lost(const Received& one, const RemoteWriter* writer) const {
+  if (one.by_hub) return shows_no_life(one);
   if (writer == nullptr || writer->lost) return true;
   return !settings_.believes_silence && writer->silent_since && shows_no_life(one);
 }

@@ -66,6 +66,7 @@ class NodeRoster {
  private:
   struct Received {  ///< the last status of one process
     Guid writer;
+    bool by_hub = false;  ///< then DDS here says nothing of the writer
     messages::SeenStatus seen;
     std::deque<std::chrono::nanoseconds> clock_ahead;  ///< estimates from the last samples
   };

@@ -19,6 +19,8 @@ void Participant::progress() { domain_->liveliness().progress(); }
 
 bool Participant::stays_on_this_host() const { return domain_->loopback_only(); }
 
+bool Participant::has_way_to_all() const { return domain_->has_way_to_all(); }
+
 std::optional<Participant::ImpairmentReport> Participant::impairment() const {
   const DelayLine* line = domain_->delay_line();
   if (line == nullptr) return std::nullopt;

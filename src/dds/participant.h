@@ -30,6 +30,9 @@ class Participant {
   /// True when all traffic is on loopback. Loopback cannot be cut, so a process that is silent there is dead.
   bool stays_on_this_host() const;
 
+  /// True if what is for all nodes reaches them: with discovery: neighbours only once a hub is there.
+  bool has_way_to_all() const;
+
   struct ImpairmentReport {
     Impairment impairment;  ///< result of the profile and the settings
     ImpairmentCounters datagrams;

@@ -92,6 +92,19 @@ void set_peers(DomainParticipantQos& qos, const Settings& settings) {
   }
 }
 
+/// Makes the participant announce itself to the hub only; the hub itself listens where all look for it.
+void set_hub(DomainParticipantQos& qos, const Settings& settings) {
+  const std::string address = settings.interfaces.empty() ? "127.0.0.1" : settings.interfaces.front();
+  const Locator_t hub = locator_of(address, hub_port(settings.domain));
+  const bool is_hub = settings.introductions != nullptr;
+  auto& builtin = qos.wire_protocol().builtin;
+  builtin.initialPeersList.clear();
+  builtin.metatrafficUnicastLocatorList.clear();
+  builtin.initialPeersList.push_back(hub);
+  builtin.metatrafficUnicastLocatorList.push_back(is_hub ? hub : locator_of(address, 0));
+  if (is_hub) qos.user_data().setValue({kHubUserData.begin(), kHubUserData.end()});
+}
+
 /// Sets discovery by `fast-discovery-server -i N`, where N is the position in the list. As a super client the
 /// participant discovers every endpoint.
 void set_servers(DomainParticipantQos& qos, const Settings& settings) {
@@ -168,10 +181,19 @@ DomainParticipantQos participant_qos(Profiles& profiles, const Settings& setting
     set_peers(qos, settings);
   } else if (settings.discovery == config::Discovery::kServer) {
     set_servers(qos, settings);
+  } else if (settings.discovery == config::Discovery::kNeighbours) {
+    set_hub(qos, settings);
   }
   listen_where_peers_look(qos, settings.domain);
   if (settings.keys) set_keys(qos, *settings.keys);
   return qos;
+}
+
+std::uint16_t hub_port(std::uint32_t domain) {
+  // RTPS gives a domain 250 ports; the participants' begin at the 10th, after two for multicast.
+  constexpr std::uint32_t kOfHub = 2;
+  const eprosima::fastrtps::rtps::PortParameters ports;
+  return static_cast<std::uint16_t>(ports.portBase + ports.domainIDGain * domain + kOfHub);
 }
 
 void make_room_for_handshakes(DomainParticipantQos& qos) {

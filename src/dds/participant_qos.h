@@ -1,6 +1,9 @@
 // The participant's QoS: its profile, with what the settings replace in it.
 #pragma once
 
+#include <cstdint>
+#include <string_view>
+
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 
 #include "dds/profiles.h"
@@ -11,6 +14,13 @@ namespace aurasim::dds {
 /// Returns the QoS. settings.interfaces, .discovery and .peers, where given, replace those of the profile. The largest
 /// message is what fits into a packet of the links that carry it (link_mtu.h). Throws DdsError for an invalid value.
 eprosima::fastdds::dds::DomainParticipantQos participant_qos(Profiles& profiles, const Settings& settings);
+
+/// User data of a hub's participant.
+inline constexpr std::string_view kHubUserData = "aurasim hub";
+
+/// Where the hub of a run in this DDS domain receives announcements (Discovery::kNeighbours). No participant of the domain
+/// has this port by itself.
+std::uint16_t hub_port(std::uint32_t domain);
 
 /// Largest datagram that all transports send, bytes, without the headers of IP and UDP.
 std::uint32_t largest_datagram_B(const eprosima::fastdds::dds::DomainParticipantQos& qos);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -17,6 +18,8 @@
 
 namespace aurasim::dds {
 
+class Introductions;
+
 struct Settings {
   std::uint32_t domain = 0;
   /// XML profiles. Profile `x` is taken from this file as `<stem>_x` (hosts.xml: `hosts_aura_writer`) or else as `x`;
@@ -27,6 +30,8 @@ struct Settings {
   /// removes the white list. Empty: the profile decides.
   std::vector<std::string> interfaces;
   config::Discovery discovery = config::Discovery::kMulticast;
+  /// Set in the hub of Discovery::kNeighbours: who is to be introduced to whom.
+  std::shared_ptr<Introductions> introductions;
   std::vector<std::string> peers;  ///< "address" or "address:port" (UDP); replaces the profile's initial peers
   /// Overrides the profile's properties aurasim.impair.*.
   ImpairmentOverrides impairment;

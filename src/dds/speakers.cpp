@@ -20,10 +20,12 @@ constexpr std::size_t kMostProcesses = 4096;
 constexpr std::size_t kMostWords = 64;
 constexpr std::size_t kMostFormer = 64;
 
-constexpr std::string_view kRegionPartition = "region/";
+constexpr std::string_view kRegionPartition = "region/", kHubPartition = "hub/";
 
-/// Region of a partition's name: 3 for "region/3" and "region/3/to/1"; -1 for anything else, wild cards included.
+/// Region of a partition's name: 3 for "region/3", "region/3/to/1" and "hub/region/3" (what goes by a hub is of that
+/// region, too); -1 for anything else, wild cards included.
 std::int64_t region_of_partition(std::string_view partition) {
+  if (partition.starts_with(kHubPartition)) partition.remove_prefix(kHubPartition.size());
   if (!partition.starts_with(kRegionPartition)) return -1;
   partition.remove_prefix(kRegionPartition.size());
   std::uint32_t region = 0;
@@ -74,6 +76,27 @@ void Speakers::remove(const Guid& writer) {
   gone_.pop_front();
 }
 
+void Speakers::add_hub(const ProcessPrefix& process) {
+  const std::lock_guard lock(mutex_);
+  hubs_.insert(process);
+  if (guard_ != nullptr && !nodes_.empty()) tell_guard_of_nodes();
+}
+
+void Speakers::remove_hub(const ProcessPrefix& process) {
+  const std::lock_guard lock(mutex_);
+  hubs_.erase(process);
+}
+
+bool Speakers::is_hub(const ProcessPrefix& process) const {
+  const std::lock_guard lock(mutex_);
+  return hubs_.contains(process);
+}
+
+bool Speakers::has_hub() const {
+  const std::lock_guard lock(mutex_);
+  return !hubs_.empty();
+}
+
 void Speakers::set(core::RegionId region, const ProcessPrefix& process) {
   const std::lock_guard lock(mutex_);
   const auto [node, is_new] = nodes_.try_emplace(region, process);
@@ -91,6 +114,8 @@ void Speakers::tell_guard_of_nodes() const {
   for (const auto& [region, process] : nodes_) {
     if (process != self_) nodes.insert(prefix_of(process));
   }
+  if (nodes.empty()) return guard_->set_nodes({});  // then every process counts as one
+  for (const ProcessPrefix& hub : hubs_) nodes.insert(prefix_of(hub));  // what it asks for is for all
   guard_->set_nodes(std::move(nodes));
 }
 

@@ -36,6 +36,12 @@ class Speakers {
   void add(const Guid& writer, const std::vector<std::string>& partitions);
   void remove(const Guid& writer);
 
+  /// Takes note that a process is a hub of the run, or is gone. A hub publishes what others have published.
+  void add_hub(const ProcessPrefix& process);
+  void remove_hub(const ProcessPrefix& process);
+  bool is_hub(const ProcessPrefix& process) const;
+  bool has_hub() const;
+
   /// Sets `process` as the node of `region`.
   void set(core::RegionId region, const ProcessPrefix& process);
   std::optional<ProcessPrefix> of(core::RegionId region) const;
@@ -82,6 +88,7 @@ class Speakers {
   std::map<core::RegionId, ProcessPrefix> nodes_;
   std::deque<ProcessPrefix> former_;  ///< processes that were nodes until others took over their regions, oldest first
   std::map<ProcessPrefix, std::uint64_t> refused_of_;
+  std::set<ProcessPrefix> hubs_;
   std::set<ProcessPrefix> shunned_;
   std::set<std::pair<ProcessPrefix, std::string>> rationed_;
   std::uint64_t refused_ = 0;

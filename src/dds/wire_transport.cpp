@@ -10,6 +10,7 @@
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 
+#include "dds/introductions.h"
 #include "dds/settings.h"
 
 namespace aurasim::dds {
@@ -114,8 +115,11 @@ void WireTransport::receive(TransportReceiverInterface* receiver, const octet* b
                             const Locator_t& local, const Locator_t& remote) {
   // The bytes are a buffer of the socket's thread, made for what it receives.
   const std::span datagram(const_cast<octet*>(bytes), size);  // NOLINT
+  const auto& introductions = descriptor_.wire.introductions;
+  const bool is_to_be_passed_on = introductions != nullptr && rtps::announcement_in(datagram).has_value();
   const auto admitted =
       descriptor_.wire.guard->admit(datagram, source_of(remote), std::chrono::steady_clock::now().time_since_epoch());
+  if (is_to_be_passed_on && admitted.size > 0) introductions->hear(datagram);
   const auto delivery = descriptor_.wire.guard->delivery().begin(admitted.is_alone);
   for (const auto& made : admitted.before) {
     const auto whole = made.bytes();

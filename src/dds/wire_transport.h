@@ -17,12 +17,16 @@
 
 namespace aurasim::dds {
 
+class Introductions;
+
 /// Parts that the transports of a participant share.
 struct Wire {
   std::shared_ptr<rtps::DatagramGuard> guard;
   std::shared_ptr<DelayLine> line;  ///< null: the network is not impaired
   /// Shortest time between two of the participant's own announcements to one peer. 0: no limit.
   std::chrono::nanoseconds between_announcements{0};
+  /// Hears the announcements that come in; null: this is no hub.
+  std::shared_ptr<Introductions> introductions;
 };
 
 struct WireTransportDescriptor final : eprosima::fastdds::rtps::ChainingTransportDescriptor {

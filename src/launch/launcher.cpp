@@ -12,6 +12,7 @@
 
 #include "cut/kept_on_disk.h"
 #include "cut/saved_world.h"
+#include "dds/hub.h"
 #include "host/spawn.h"
 #include "host/stop_signal.h"
 #include "host/terminal.h"
@@ -45,6 +46,8 @@ Launcher::Launcher(const config::Launch& launch, const setup::LaunchOptions& opt
           participant_,
           {launch.regions.version(), {}, launch.agreement(), run_, static_cast<std::uint32_t>(launch.regions.size())}) {
   options_.heartbeat = heartbeats_.words();
+  const bool needs_hub = launch.dds.discovery == config::Discovery::kNeighbours;
+  if (needs_hub && !dds::Hub::is_there(participant_.settings())) hub_.start(setup::hub_command_line(options_));
 }
 
 Launcher::~Launcher() {
@@ -63,6 +66,7 @@ command_line::ExitCode Launcher::run() {
   auto next_show = Clock::now();
   while (any_running()) {
     control_.wait(20ms);
+    hub_.look(Clock::now());
     look_at_nodes();
     hear_commands();
     end_hung_nodes();

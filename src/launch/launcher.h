@@ -12,6 +12,7 @@
 #include "dds/random_id.h"
 #include "host/folder_lock.h"
 #include "host/heartbeat.h"
+#include "launch/hub_process.h"
 #include "launch/live_table.h"
 #include "launch/start_watch.h"
 #include "launch/viewer_process.h"
@@ -82,6 +83,7 @@ class Launcher {
   const config::Launch& launch_;
   setup::LaunchOptions options_;
   std::uint64_t run_ = dds::draw_id();
+  HubProcess hub_;  ///< with discovery: neighbours, unless one is there
   dds::Participant participant_;
   dds::ControlBus control_;
   TerminalView view_;

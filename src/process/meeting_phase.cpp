@@ -25,7 +25,24 @@ host::LongWork waiting_for_nodes(std::size_t regions) {
 
 }  // namespace
 
+/// Waits until what others say reaches this node. Refuses to run if there is no way.
+bool MeetingPhase::finds_hub() {
+  const auto began = Clock::now();
+  Patience patience(run_.options.start_time_out, began);
+  while (!run_.endpoints.participant().has_way_to_all()) {
+    if (host::stop_requested()) return false;
+    if (patience.is_over(Clock::now())) {
+      run_.refuse(fmt::format("no hub of DDS domain {} in {} s: `launch` starts one, and so does `aurasim hub`",
+                              run_.launch.dds.domain, whole_seconds(Clock::now() - began)));
+      return false;
+    }
+    run_.control().wait(20ms);
+  }
+  return true;
+}
+
 bool MeetingPhase::domain_is_free() {
+  if (!finds_hub()) return false;
   const auto begin = Clock::now();
   // A node with a status has published a map, too, which may still be on its way.
   while (Clock::now() < begin + (run_.control().strangers().empty() ? kListenFirst : 6 * kListenFirst)) {

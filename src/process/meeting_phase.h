@@ -28,6 +28,7 @@ class MeetingPhase {
   bool wait_for_start();
 
  private:
+  bool finds_hub();
   bool another_run_is_here();
   void measure(dds::RoundTrips& trips, RoundTripBook& book);
   bool receives_from_others();

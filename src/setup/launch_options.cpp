@@ -42,4 +42,10 @@ std::vector<std::string> spare_command_line(const config::Launch& launch, const 
   return command_line("spare", launch, options, run);
 }
 
+std::vector<std::string> hub_command_line(const LaunchOptions& options) {
+  std::vector<std::string> words = {host::own_program(), "hub", options.files.file};
+  for (const std::string& change : options.files.overrides) words.insert(words.end(), {"--set", change});
+  return words;
+}
+
 }  // namespace aurasim::setup

@@ -37,4 +37,7 @@ std::vector<std::string> node_command_line(const config::Launch& launch, const L
 std::vector<std::string> spare_command_line(const config::Launch& launch, const LaunchOptions& options,
                                             std::uint64_t run);
 
+/// Program and arguments of the run's hub (dds.discovery: neighbours).
+std::vector<std::string> hub_command_line(const LaunchOptions& options);
+
 }  // namespace aurasim::setup

@@ -98,6 +98,21 @@ std::string partition_of(TopicId id, const Route& route) {
 
 std::string in_later_lives(const std::string& partition) { return partition + "/since/*"; }
 
+bool goes_by_hub(TopicId topic, std::string_view partition) {
+  switch (topic) {
+    case TopicId::kNodeStatus:
+    case TopicId::kRegionMap:
+    case TopicId::kRunControl:
+      return true;
+    case TopicId::kCheckpoint:  // those to keepers go straight there
+      return partition == kWorldPartition;
+    default:
+      return false;
+  }
+}
+
+std::string to_hub(std::string_view partition) { return "hub/" + std::string(partition); }
+
 std::vector<std::string> partitions_in_run(TopicId topic, std::size_t regions) {
   const Division division = at(topic).division;
   if (division == Division::kNone) return {kWorldPartition};

@@ -88,6 +88,13 @@ std::string partition_of(TopicId topic, const Route& route = {});
 /// Returns the pattern for `partition` in all lives but the first.
 std::string in_later_lives(const std::string& partition);
 
+/// True for messages of nodes to all nodes. With `dds.discovery: neighbours` they go to the hub of the run, and from it
+/// to all: they are published in to_hub(partition), and the hub publishes them in the partition itself.
+bool goes_by_hub(TopicId topic, std::string_view partition);
+std::string to_hub(std::string_view partition);
+/// The pattern of all partitions that the hub reads.
+inline constexpr const char* kEveryPartitionToHub = "hub/*";
+
 /// Returns all partitions in which a topic is published before the first death or change, in a run of `regions`
 /// regions. Those for observers are a pattern for each region.
 std::vector<std::string> partitions_in_run(TopicId topic, std::size_t regions);

@@ -208,6 +208,18 @@ observe: {tick_hz: 30}
   EXPECT_EQ(launch.observe.tick_hz, 30);
 }
 
+TEST(LaunchFile, HasNeighboursOnlyOnLoopbackAndWithoutKeys) {
+  Workspace workspace;
+  const auto read = [&](const std::string& dds) { return workspace.launch(kSmallLaunch + ("dds: " + dds + "\n")); };
+  EXPECT_EQ(read("{discovery: neighbours}").dds.discovery, Discovery::kNeighbours);
+  EXPECT_EQ(read("{discovery: neighbours, interfaces: [127.0.0.2]}").dds.discovery, Discovery::kNeighbours);
+  EXPECT_THROW(read("{discovery: neighbours, interfaces: [10.0.0.1]}"), BadConfig);
+  EXPECT_THROW(read("{discovery: neighbours, interfaces: [\"*\"]}"), BadConfig);
+  EXPECT_THROW(read("{discovery: neighbours, peers: [127.0.0.1]}"), BadConfig);
+  workspace.write("keys/ca.pem", "");
+  EXPECT_THROW(read("{discovery: neighbours, security: keys}"), BadConfig);
+}
+
 TEST(LaunchFile, SaysOfTheNetworkOnlyWhatItWasTold) {
   const Workspace workspace;
   EXPECT_FALSE(workspace.launch(kSmallLaunch).dds.impair.delay_s) << "or it would win over the profile";

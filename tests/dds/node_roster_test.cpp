@@ -2,6 +2,7 @@
 #include "dds/node_roster.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace aurasim::dds {
 namespace {
@@ -20,7 +21,9 @@ class ARoster : public ::testing::Test {
     messages::Status status;
     status.region = RegionId{region};
     status.process = process;
-    roster_.note(status, {writer_of(process), {}});
+    Origin origin;
+    origin.writer = writer_of(process);
+    roster_.note(status, origin);
   }
   void look() { roster_.look({live_writer(1), live_writer(2)}); }
   void look_at_news() { roster_.look_at_news({live_writer(1), live_writer(2)}); }
@@ -63,6 +66,27 @@ TEST_F(ARoster, LooksOnlyAtRegionsWithNews) {
   EXPECT_FALSE(roster_.statuses().at(RegionId{2}).lost) << "it was not looked at";
   roster_.look({live_writer(2)});
   EXPECT_TRUE(roster_.statuses().at(RegionId{2}).lost);
+}
+
+TEST_F(ARoster, KnowsWhoLivesByItsProcessWhereAStatusCameByAHub) {
+  RosterSettings here = settings();
+  here.stays_on_this_host = true;
+  NodeRoster roster(here, speakers_);
+  const auto receive = [&](std::uint32_t region, unsigned char process, std::uint32_t pid) {
+    messages::Status status;
+    status.region = RegionId{region};
+    status.process = process;
+    status.pid = pid;
+    Origin origin;
+    origin.writer = writer_of(process);
+    origin.by_hub = true;
+    roster.note(status, origin);
+  };
+  receive(1, 7, static_cast<std::uint32_t>(::getpid()));
+  receive(2, 8, 0x3fffffff);
+  roster.look({});
+  EXPECT_FALSE(roster.statuses().at(RegionId{1}).lost) << "no writer of it is matched here, and the hub may be gone";
+  EXPECT_TRUE(roster.statuses().at(RegionId{2}).lost) << "there is no such process";
 }
 
 TEST_F(ARoster, LooksAtAllAfterADeath) {

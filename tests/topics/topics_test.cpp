@@ -44,6 +44,18 @@ TEST(Partitions, AreOthersAfterADeathWhereNodesTalkToNodes) {
   EXPECT_EQ(partition_of(TopicId::kRunControl, {.life = 5}), "world");
 }
 
+TEST(Partitions, OfMessagesToAllAreTheHubsWhereThereIsOne) {
+  EXPECT_TRUE(goes_by_hub(TopicId::kNodeStatus, "region/3"));
+  EXPECT_TRUE(goes_by_hub(TopicId::kRunControl, "world"));
+  EXPECT_TRUE(goes_by_hub(TopicId::kCheckpoint, "world"));
+  EXPECT_FALSE(goes_by_hub(TopicId::kCheckpoint, "region/3/to/4"));
+  EXPECT_FALSE(goes_by_hub(TopicId::kAura, "region/3"));
+  EXPECT_FALSE(goes_by_hub(TopicId::kCommand, "world")) << "those who ask meet all nodes";
+  EXPECT_TRUE(matches(kEveryPartitionToHub, to_hub("region/3")));
+  EXPECT_FALSE(matches("region/*", to_hub("region/3"))) << "or a hub would not be needed";
+  EXPECT_FALSE(matches(kEveryPartitionToHub, "region/3")) << "or a hub would pass on what a hub has passed on";
+}
+
 TEST(Partitions, OfAnOpenRouteAreAPatternOfAllThatItLeavesOpen) {
   const std::string to_1 = partition_of(TopicId::kMigration, {.destination = RegionId{1}});
   EXPECT_TRUE(matches(to_1, "region/3/to/1"));

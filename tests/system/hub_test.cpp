@@ -1,0 +1,114 @@
+// Runs with dds.discovery: neighbours (docs/decisions/0052): the same bits, also when the hub dies.
+#include <csignal>
+
+#include "system_fixture.h"
+
+namespace aurasim::system_test {
+namespace {
+
+const Words kByHub = set({"dds.discovery=neighbours", "time.sync=deterministic", "time.pace=none"});
+/// Six regions of which not all listen to each other.
+const Words kSix = set({"regions={layout: columns, count: 6, width: 12, neighbour_distance: 1}"});
+
+class AHub : public SystemTest {
+ protected:
+  /// The hub's process; 0: there is none.
+  static pid_t hub_of(const Process& launcher) {
+    for (const pid_t child : children_of(launcher.pid())) {
+      const Words words = command_line_of(child);
+      if (words.size() > 1 && words[1] == "hub") return child;
+    }
+    return 0;
+  }
+  /// The hash of every state.
+  std::string hashes(const std::string& name, const Words& more) {
+    Process& run = launch(name, launch_file("demo"), more);
+    expect_exit(run, 0);
+    expect_all_bodies_accounted_for(report_of(name));
+    return report_of(name).state_hash();
+  }
+};
+
+TEST_F(AHub, BringsThoseTogetherWhoNeedEachOther) {
+  const Words steps = {"--steps", "300"};
+  const std::string by_hub = hashes("by_hub", steps + kByHub + kSix);
+  EXPECT_GT(report_of("by_hub").count("migrations"), 50);
+  const std::string central =
+      hashes("central", steps + set({"regions.count=1", "time.sync=deterministic", "time.pace=none"}));
+  EXPECT_EQ(first_difference(by_hub, central), "");
+}
+
+TEST_F(AHub, ServesCoupledRegionsAndTheChoiceOfTheExchange) {
+  const Words steps = {"--steps", "200"};
+  const std::string by_hub = hashes("by_hub", steps + kByHub + set({"exchange=auto", "exchange_limit=10"}));
+  EXPECT_EQ(report_of("by_hub").entry("exchange"), "coupled");
+  const std::string central =
+      hashes("central", steps + set({"regions.count=1", "time.sync=deterministic", "time.pace=none"}));
+  EXPECT_EQ(first_difference(by_hub, central), "");
+}
+
+TEST_F(AHub, ThatIsKilledIsStartedAgainAndTheRunGoesOn) {
+  const Words in_time = set({"dds.discovery=neighbours", "time.sync=deterministic"});
+  Process& run = launch("killed", launch_file("demo"), Words{"--steps", "600"} + in_time + kSix);
+  ASSERT_NO_FATAL_FAILURE(expect_reaches(report_of("killed"), 6, 120));
+  const pid_t first = hub_of(run);
+  ASSERT_NE(first, 0);
+  ASSERT_EQ(::kill(first, SIGKILL), 0);
+  ASSERT_TRUE(wait_until([&] { return hub_of(run) != 0 && hub_of(run) != first; }, kGenerous));
+  expect_exit(run, 0);
+  EXPECT_THAT(run.err(), ::testing::HasSubstr("the hub of the run has ended; the launcher starts it again"));
+  EXPECT_THAT(run.err(), ::testing::Not(::testing::HasSubstr("died")));
+  expect_all_bodies_accounted_for(report_of("killed"));
+  const std::string central = hashes("central", Words{"--steps", "600"} + set({"regions.count=1", "time.pace=none",
+                                                                              "time.sync=deterministic"}));
+  EXPECT_EQ(first_difference(report_of("killed").state_hash(), central), "");
+}
+
+TEST_F(AHub, LetsARegionBeTakenOverWhoseNodeDies) {
+  const Words in_time = set({"dds.discovery=neighbours", "time.sync=deterministic"});
+  Process& run = launch("died", launch_file("demo"), Words{"--steps", "600"} + in_time + kSix);
+  ASSERT_NO_FATAL_FAILURE(expect_reaches(report_of("died"), 6, 120));
+  ASSERT_NO_FATAL_FAILURE(kill_node(run, 2));
+  expect_exit(run, 0);
+  expect_all_bodies_accounted_for(report_of("died"));
+}
+
+TEST_F(AHub, PassesCommandsOn) {
+  Process& run = launch("steered", launch_file("demo"), set({"dds.discovery=neighbours"}));
+  ASSERT_NO_FATAL_FAILURE(expect_reaches(report_of("steered"), 4, 60));
+  const Words there = in_own_domain() + set({"dds.discovery=neighbours"});
+  Process& ask = start(Words{"send", "pause", launch_file("demo")} + there);
+  expect_exit(ask, 0);
+  Process& stop = start(Words{"send", "stop", launch_file("demo")} + there);
+  expect_exit(stop, 0);
+  expect_exit(run, 0);
+  expect_all_bodies_accounted_for(report_of("steered"));
+}
+
+TEST_F(AHub, IsAloneInItsDomain) {
+  const Words words = Words{"hub", launch_file("demo")} + set({"dds.discovery=neighbours"}) + in_own_domain();
+  start(words);
+  std::string said;
+  ASSERT_TRUE(wait_until(
+      [&] {
+        Process& second = start(words);
+        if (!second.wait(500ms)) {  // it was the first one
+          second.signal(SIGKILL);
+          second.wait(kGenerous);
+          return false;
+        }
+        said = second.err();
+        return true;
+      },
+      kGenerous));
+  EXPECT_THAT(said, ::testing::HasSubstr("already has a hub"));
+}
+
+TEST_F(AHub, IsNotThereForOtherDiscovery) {
+  Process& hub = start(Words{"hub", launch_file("demo")} + in_own_domain());
+  expect_exit(hub, 2);
+  EXPECT_THAT(hub.err(), ::testing::HasSubstr("dds.discovery"));
+}
+
+}  // namespace
+}  // namespace aurasim::system_test
