@@ -86,6 +86,7 @@ command_line::ExitCode Launcher::run() {
   spares_.clear();
   show();
   viewer_.stop();
+  hub_.stop();
   return conclude();
 }
 

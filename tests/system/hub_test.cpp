@@ -7,8 +7,8 @@ namespace aurasim::system_test {
 namespace {
 
 const Words kByHub = set({"dds.discovery=neighbours", "time.sync=deterministic", "time.pace=none"});
-/// Six regions of which not all listen to each other.
-const Words kSix = set({"regions={layout: columns, count: 6, width: 12, neighbour_distance: 1}"});
+/// Six regions that listen to the next ones only.
+const Words kSix = set({"regions={layout: columns, count: 6, width: 12}"});
 
 class AHub : public SystemTest {
  protected:
