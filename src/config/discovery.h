@@ -6,9 +6,9 @@
 namespace aurasim::config {
 
 enum class Discovery : std::uint8_t {
-  kMulticast,  ///< as in the QoS profile; the shipped ones use multicast
-  kPeers,      ///< no multicast: announcements go to the addresses of `peers`
-  kServer,     ///< through the discovery servers in `peers`
+  kMulticast,   ///< as in the QoS profile; the shipped ones use multicast
+  kPeers,       ///< no multicast: announcements go to the addresses of `peers`
+  kServer,      ///< through the discovery servers in `peers`
   kNeighbours,  ///< no multicast: the run's hub introduces those that have something to say to each other
 };
 

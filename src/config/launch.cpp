@@ -65,8 +65,9 @@ void check_neighbours(const Field& field, const Dds& dds) {
         "peers or server");
   }
   if (!dds.security.empty()) {
-    fields["security"].refuse("nothing with discovery: neighbours, whose hub has no key; with keys use multicast, peers "
-                              "or server");
+    fields["security"].refuse(
+        "nothing with discovery: neighbours, whose hub has no key; with keys use multicast, peers "
+        "or server");
   }
   if (fields.has("peers")) fields["peers"].refuse("nothing with discovery: neighbours, whose hub introduces the peers");
 }

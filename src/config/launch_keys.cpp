@@ -159,9 +159,10 @@ const KeysOf<Dds>& dds_keys() {
               .otherwise("`../qos/aurasim.xml`, or where that is not, the one that comes with the program"),
           optional(
               "discovery", &Dds::discovery,
-              choice<Discovery>(
-                  {{"multicast", Discovery::kMulticast}, {"peers", Discovery::kPeers}, {"server", Discovery::kServer},
-                   {"neighbours", Discovery::kNeighbours}}),
+              choice<Discovery>({{"multicast", Discovery::kMulticast},
+                                 {"peers", Discovery::kPeers},
+                                 {"server", Discovery::kServer},
+                                 {"neighbours", Discovery::kNeighbours}}),
               "multicast; peers: announcements go to the addresses in `peers`; server: Fast DDS discovery servers "
               "at `peers`; neighbours: a hub (`aurasim hub`; `launch` starts one) introduces the nodes that need each "
               "other, for many nodes on one host"),

@@ -97,8 +97,8 @@ Domain::Domain(const Settings& settings)
     delay_line_ =
         std::make_shared<DelayLine>(impairment, settings.impairment_stream, metatraffic_ports(qos, settings.domain));
   }
-  install(qos, {guard_, delay_line_, shortest_between_announcements(finds_all_itself ? settings.nodes : 1),
-                introductions_});
+  install(qos,
+          {guard_, delay_line_, shortest_between_announcements(finds_all_itself ? settings.nodes : 1), introductions_});
   switch_intraprocess_delivery_off();
   messages::set_type_tables_up();
   if (settings.keys) refusals_.emplace(settings.report_refusal);

@@ -31,8 +31,8 @@ struct EndpointSpec {
   /// For a reader: one that asks for no history (volatile) becomes best effort and gets no retransmissions, whatever
   /// its profile says.
   bool best_effort_if_volatile = false;
-  /// For the endpoints of a hub: samples of many sources, which are passed on as they come. The history needs no room for
-  /// parts of a message that the next one replaces.
+  /// For the endpoints of a hub: samples of many sources, which are passed on as they come. The history needs no room
+  /// for parts of a message that the next one replaces.
   bool is_of_hub = false;
 };
 

@@ -72,8 +72,8 @@ Settings checked(Settings settings) {
   return settings;
 }
 
-/// Partitions in which the hub publishes. Statuses are read by the name of their region as well as by a pattern. Another
-/// vendor's reader that names a pattern does not match a writer that names one, so there is a name, too.
+/// Partitions in which the hub publishes. Statuses are read by the name of their region as well as by a pattern.
+/// Another vendor's reader that names a pattern does not match a writer that names one, so there is a name, too.
 std::vector<std::string> partitions_of(TopicId topic) {
   if (topic == TopicId::kNodeStatus) return {"region/*", "region/hub"};
   return {topics::kWorldPartition};
@@ -97,7 +97,7 @@ struct Lane {
   Reader reader;
   Writer writer;
   KeptSamples kept;
-  std::uint64_t seen_changes = 0;      ///< of the reader's watch
+  std::uint64_t seen_changes = 0;       ///< of the reader's watch
   std::uint64_t newest_generation = 0;  ///< of checkpoints
 };
 

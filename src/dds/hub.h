@@ -13,8 +13,8 @@ namespace aurasim::dds {
 
 class Hub {
  public:
-  /// Joins the domain as its hub; `settings.introductions` is not used. Throws DdsError when the domain has a hub, or if
-  /// it cannot be joined.
+  /// Joins the domain as its hub; `settings.introductions` is not used. Throws DdsError when the domain has a hub, or
+  /// if it cannot be joined.
   explicit Hub(Settings settings);
   ~Hub();
 

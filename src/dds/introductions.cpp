@@ -26,24 +26,31 @@ void Introductions::hear(std::span<const std::uint8_t> announcement) {
   if (!datagram) return;
   const std::lock_guard lock(mutex_);
   const rtps::GuidPrefix sender = rtps::sender_of(announcement);
-  if (participants_.size() >= kMostParticipants && !participants_.contains(sender)) return;
-  Known& known = participants_[sender];
-  known.announcement = std::move(*datagram);
-  ++known.heard;
+  Known* const known = known_or_new(sender);
+  if (known == nullptr) return;
+  known->announcement = std::move(*datagram);
+  ++known->heard;
 }
 
 void Introductions::add(const rtps::GuidPrefix& participant, MeetingPoint where) {
   const std::lock_guard lock(mutex_);
-  if (participants_.size() >= kMostParticipants && !participants_.contains(participant)) return;
-  participants_[participant].where = where;
+  if (Known* const known = known_or_new(participant)) known->where = where;
+}
+
+/// Null: there is no room. Those of whom only an announcement has come make room: it may have come after their end.
+Introductions::Known* Introductions::known_or_new(const rtps::GuidPrefix& participant) {
+  if (participants_.size() >= kMostParticipants && !participants_.contains(participant)) {
+    std::erase_if(participants_, [](const auto& entry) { return entry.second.where.port == 0; });
+    if (participants_.size() >= kMostParticipants) return nullptr;
+  }
+  return &participants_[participant];
 }
 
 void Introductions::remove(const rtps::GuidPrefix& participant) {
   const std::lock_guard lock(mutex_);
   participants_.erase(participant);
-  std::erase_if(pairs_, [&](const auto& entry) {
-    return entry.first.first == participant || entry.first.second == participant;
-  });
+  std::erase_if(
+      pairs_, [&](const auto& entry) { return entry.first.first == participant || entry.first.second == participant; });
   const auto is_its = [&](const DiscoveredEndpoint& one) { return one.guid.prefix == participant; };
   for (auto& [topic, endpoints] : topics_) {
     std::erase_if(endpoints.writers, is_its);

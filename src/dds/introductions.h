@@ -1,6 +1,6 @@
-// Whom the hub of a run introduces to whom (dds.discovery: neighbours). Participants announce themselves to the hub only.
-// Two of them meet when one has a writer that the other one has a matching reader for: the hub passes the announcement
-// of each on to the other, and the two do the rest by themselves.
+// Whom the hub of a run introduces to whom (dds.discovery: neighbours). Participants announce themselves to the hub
+// only. Two of them meet when one has a writer that the other one has a matching reader for: the hub passes the
+// announcement of each on to the other, and the two do the rest by themselves.
 #pragma once
 
 #include <array>
@@ -55,8 +55,8 @@ class Introductions {
   void remove(const rtps::WireGuid& endpoint);
 
   /// Introductions that are due. Each pair is introduced kEagerly times in the first seconds, because a datagram may be
-  /// lost, and then again every kPeriod with announcements that are newer than the last: two that have lost sight of each
-  /// other meet again, and nobody is announced after its end.
+  /// lost, and then again every kPeriod with announcements that are newer than the last: two that have lost sight of
+  /// each other meet again, and nobody is announced after its end.
   std::vector<Introduction> take_due(Time now);
   /// Number of pairs that have been introduced and are still there.
   std::size_t pairs() const;
@@ -84,6 +84,7 @@ class Introductions {
     std::vector<DiscoveredEndpoint> writers, readers;
   };
 
+  Known* known_or_new(const rtps::GuidPrefix& participant);
   void match(const DiscoveredEndpoint& endpoint, const std::vector<DiscoveredEndpoint>& others);
 
   mutable std::mutex mutex_;

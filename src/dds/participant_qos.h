@@ -18,8 +18,8 @@ eprosima::fastdds::dds::DomainParticipantQos participant_qos(Profiles& profiles,
 /// User data of a hub's participant.
 inline constexpr std::string_view kHubUserData = "aurasim hub";
 
-/// Where the hub of a run in this DDS domain receives announcements (Discovery::kNeighbours). No participant of the domain
-/// has this port by itself.
+/// Where the hub of a run in this DDS domain receives announcements (Discovery::kNeighbours). No participant of the
+/// domain has this port by itself.
 std::uint16_t hub_port(std::uint32_t domain);
 
 /// Largest datagram that all transports send, bytes, without the headers of IP and UDP.

@@ -114,7 +114,7 @@ void Speakers::tell_guard_of_nodes() const {
   for (const auto& [region, process] : nodes_) {
     if (process != self_) nodes.insert(prefix_of(process));
   }
-  if (nodes.empty()) return guard_->set_nodes({});  // then every process counts as one
+  if (nodes.empty()) return guard_->set_nodes({});                      // then every process counts as one
   for (const ProcessPrefix& hub : hubs_) nodes.insert(prefix_of(hub));  // what it asks for is for all
   guard_->set_nodes(std::move(nodes));
 }

@@ -6,22 +6,24 @@
 #include <spdlog/spdlog.h>
 #include <sys/wait.h>
 
+#include "dds/hub.h"
 #include "host/spawn.h"
 
 namespace aurasim::launch {
 namespace {
 
-/// Time between two starts, so that one that cannot run is not started all the time.
-constexpr std::chrono::seconds kBetweenStarts{1};
+/// Time between two looks for a hub of others, and between two starts of one that cannot run.
+constexpr std::chrono::seconds kBetweenLooks{1};
 
 }  // namespace
 
 HubProcess::~HubProcess() { stop(); }
 
-void HubProcess::start(std::vector<std::string> words) {
+void HubProcess::keep(std::vector<std::string> words, const dds::Settings& settings) {
+  if (settings.discovery != config::Discovery::kNeighbours) return;
   words_ = std::move(words);
-  pid_ = host::spawn(words_);
-  started_ = std::chrono::steady_clock::now();
+  settings_ = settings;
+  look(std::chrono::steady_clock::now());
 }
 
 void HubProcess::look(std::chrono::steady_clock::time_point now) {
@@ -30,9 +32,9 @@ void HubProcess::look(std::chrono::steady_clock::time_point now) {
     pid_ = 0;
     spdlog::warn("the hub of the run has ended; the launcher starts it again");
   }
-  if (pid_ != 0 || now < started_ + kBetweenStarts) return;
-  pid_ = host::spawn(words_);
-  started_ = now;
+  if (pid_ != 0 || now < next_look_) return;
+  next_look_ = now + kBetweenLooks;
+  if (!dds::Hub::is_there(settings_)) pid_ = host::spawn(words_);
 }
 
 void HubProcess::stop() {

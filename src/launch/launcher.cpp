@@ -12,7 +12,6 @@
 
 #include "cut/kept_on_disk.h"
 #include "cut/saved_world.h"
-#include "dds/hub.h"
 #include "host/spawn.h"
 #include "host/stop_signal.h"
 #include "host/terminal.h"
@@ -46,8 +45,7 @@ Launcher::Launcher(const config::Launch& launch, const setup::LaunchOptions& opt
           participant_,
           {launch.regions.version(), {}, launch.agreement(), run_, static_cast<std::uint32_t>(launch.regions.size())}) {
   options_.heartbeat = heartbeats_.words();
-  const bool needs_hub = launch.dds.discovery == config::Discovery::kNeighbours;
-  if (needs_hub && !dds::Hub::is_there(participant_.settings())) hub_.start(setup::hub_command_line(options_));
+  hub_.keep(setup::hub_command_line(options_), participant_.settings());
 }
 
 Launcher::~Launcher() {

@@ -83,7 +83,7 @@ class Launcher {
   const config::Launch& launch_;
   setup::LaunchOptions options_;
   std::uint64_t run_ = dds::draw_id();
-  HubProcess hub_;  ///< with discovery: neighbours, unless one is there
+  HubProcess hub_;  ///< with discovery: neighbours
   dds::Participant participant_;
   dds::ControlBus control_;
   TerminalView view_;

@@ -18,6 +18,13 @@ std::string processes(std::size_t count) {
 
 void fail_for_want_of_a_run(const command_line::FileArguments& files, const config::Launch& launch,
                             const dds::Participant& participant) {
+  if (!participant.has_way_to_all()) {
+    spdlog::error(
+        "no hub of a run is in DDS domain {}: dds.discovery is neighbours here, and there is no run, or one with other "
+        "discovery. Another domain is named by --set dds.domain=N",
+        launch.dds.domain);
+    command_line::leave(1);
+  }
   const std::string keys = word_about_keys(participant.peers_by_keys(), launch);
   spdlog::error(
       "no node of {} was heard in DDS domain {}{}. Another domain is named by --set dds.domain=N, other hosts are "

@@ -59,8 +59,8 @@ TEST_F(AHub, ThatIsKilledIsStartedAgainAndTheRunGoesOn) {
   EXPECT_THAT(run.err(), ::testing::HasSubstr("the hub of the run has ended; the launcher starts it again"));
   EXPECT_THAT(run.err(), ::testing::Not(::testing::HasSubstr("died")));
   expect_all_bodies_accounted_for(report_of("killed"));
-  const std::string central = hashes("central", Words{"--steps", "600"} + set({"regions.count=1", "time.pace=none",
-                                                                              "time.sync=deterministic"}));
+  const std::string central = hashes(
+      "central", Words{"--steps", "600"} + set({"regions.count=1", "time.pace=none", "time.sync=deterministic"}));
   EXPECT_EQ(first_difference(report_of("killed").state_hash(), central), "");
 }
 
@@ -102,6 +102,16 @@ TEST_F(AHub, IsAloneInItsDomain) {
       },
       kGenerous));
   EXPECT_THAT(said, ::testing::HasSubstr("already has a hub"));
+}
+
+TEST_F(AHub, IsNamedByThoseWhoMissIt) {
+  Process& top = start(Words{"top", launch_file("demo")} + in_own_domain() + set({"dds.discovery=neighbours"}));
+  expect_exit(top, 1);
+  EXPECT_THAT(top.err(), ::testing::HasSubstr("no hub of a run is in DDS domain"));
+  Process& node = start(Words{"node", launch_file("demo"), "--region", "0", "--start-time-out", "1"} + in_own_domain() +
+                        set({"dds.discovery=neighbours"}));
+  expect_exit(node, 3);
+  EXPECT_THAT(node.err(), ::testing::HasSubstr("no hub of DDS domain"));
 }
 
 TEST_F(AHub, IsNotThereForOtherDiscovery) {
