@@ -50,6 +50,24 @@ TEST_F(WhoMaySpeak, ThenOnlyThatNodeAndThisProcessMay) {
   EXPECT_FALSE(speakers_.is_node(endpoint(kStranger)));
 }
 
+TEST_F(WhoMaySpeak, AWriterThatSpeaksByAHubIsAtHomeInItsRegion) {
+  speakers_.add(endpoint(kNode), {"hub/region/1"});
+  EXPECT_EQ(speakers_.home_of(endpoint(kNode)), RegionId{1});
+  EXPECT_TRUE(speakers_.is_at_home(endpoint(kNode), RegionId{1}));
+  EXPECT_FALSE(speakers_.is_at_home(endpoint(kNode), RegionId{2}));
+}
+
+TEST_F(WhoMaySpeak, AHubIsKnownUntilItIsGone) {
+  const ProcessPrefix first = endpoint(7).guidPrefix, second = endpoint(8).guidPrefix;
+  EXPECT_FALSE(speakers_.has_hub());
+  speakers_.add_hub(first);
+  speakers_.add_hub(second);
+  speakers_.remove_hub(first);
+  EXPECT_FALSE(speakers_.is_hub(first));
+  EXPECT_TRUE(speakers_.is_hub(second));
+  EXPECT_TRUE(speakers_.has_hub());
+}
+
 TEST_F(WhoMaySpeak, TheLastWordsOfANodeThatWasReplacedAreNotTold) {
   speakers_.set(RegionId{1}, endpoint(kNode).guidPrefix);
   speakers_.set(RegionId{1}, endpoint(kStranger).guidPrefix);
