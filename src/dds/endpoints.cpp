@@ -9,9 +9,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "dds/hub_qos.h"
 #include "dds/many_nodes.h"
-#include "messages/guarded_type.h"
-#include "messages/status_period.h"
 #include "rtps/datagram_guard.h"
 
 namespace aurasim::dds {
@@ -96,26 +95,6 @@ std::vector<std::string> by_hub_if_needed(const Domain& domain, const EndpointSp
   return partitions;
 }
 
-/// A writer of a hub has an instance for each source of its samples, and any number of sources.
-void make_room_for_sources(DataWriterQos& qos) {
-  auto& limits = qos.resource_limits();
-  limits.max_instances = static_cast<std::int32_t>(messages::kMostKeys) + 1;
-  limits.max_samples_per_instance = qos.history().depth;
-  constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
-  limits.max_samples =
-      static_cast<std::int32_t>(std::min(kMost, std::int64_t{limits.max_instances} * limits.max_samples_per_instance));
-}
-
-/// Of a hub's samples of which the next one replaces the last, several go in one datagram when they come faster than they
-/// are sent, and readers acknowledge now and then instead of each sample: on a busy host the hub has no more of a
-/// processor than each of the nodes, and serves them all.
-void spare_the_hub(DataWriterQos& qos, const Domain& domain) {
-  qos.publish_mode().kind = eprosima::fastdds::dds::ASYNCHRONOUS_PUBLISH_MODE;
-  qos.reliable_writer_qos().disable_heartbeat_piggyback = true;
-  qos.reliable_writer_qos().times.heartbeatPeriod = eprosima::fastrtps::Duration_t(
-      std::chrono::duration<double>(messages::status_period(domain.nodes())).count());
-}
-
 [[noreturn]] void throw_not_created(const char* what, const EndpointSpec& spec) {
   throw DdsError(fmt::format("cannot create the {} of topic {} in partition {} (Fast DDS says more on standard error)",
                              what, name_of(spec.topic), fmt::join(spec.partitions, ", ")));
@@ -143,9 +122,8 @@ Writer::Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
   }
   const bool needs_room = !spec.is_of_hub || spec.topic == TopicId::kCheckpoint;
   if (part_fields_ != nullptr && needs_room) make_room_for_parts(qos, domain);
-  if (spec.is_of_hub) make_room_for_sources(qos);
   be_patient(qos.reliable_writer_qos().times.heartbeatPeriod, shortest_heartbeat(spec.topic, domain.nodes()));
-  if (spec.is_of_hub && !needs_room && spec.topic != TopicId::kRunControl) spare_the_hub(qos, domain);
+  if (spec.is_of_hub) fit_to_hub(qos, spec.topic, domain.nodes());
   writer_ = publisher_->create_datawriter(&topic, qos, &watch_, StatusMask::publication_matched());
   if (writer_ == nullptr) {
     throw_not_created("writer", spec);

@@ -64,6 +64,15 @@ TEST_F(AHub, ThatIsKilledIsStartedAgainAndTheRunGoesOn) {
   EXPECT_EQ(first_difference(report_of("killed").state_hash(), central), "");
 }
 
+TEST_F(AHub, ThatIsKilledWhileTheNodesMeetHoldsThemUpOnly) {
+  Process& run = launch("met", launch_file("demo"), Words{"--steps", "120"} + kByHub + kSix);
+  ASSERT_TRUE(wait_until([&] { return hub_of(run) != 0 && node_of(run, 5) != 0; }, kGenerous));
+  ASSERT_EQ(::kill(hub_of(run), SIGKILL), 0);
+  expect_exit(run, 0);
+  EXPECT_EQ(report_of("met").count("steps"), 120);
+  expect_all_bodies_accounted_for(report_of("met"));
+}
+
 TEST_F(AHub, LetsARegionBeTakenOverWhoseNodeDies) {
   const Words in_time = set({"dds.discovery=neighbours", "time.sync=deterministic"});
   Process& run = launch("died", launch_file("demo"), Words{"--steps", "600"} + in_time + kSix);
