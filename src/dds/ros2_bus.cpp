@@ -111,7 +111,7 @@ OwnParticipant join(const Settings& settings, Profiles& profiles, const std::sha
   DomainParticipantQos qos = participant_qos(profiles, settings);
   const std::string_view enclave = "enclave=/;";  // ROS takes a participant with this user data for one of its own
   qos.user_data().setValue({enclave.begin(), enclave.end()});
-  install(qos, {guard, nullptr, {}, nullptr});
+  install(qos, {guard, nullptr});
   OwnParticipant participant(
       DomainParticipantFactory::get_instance()->create_participant(settings.domain, qos, nullptr, StatusMask::none()));
   if (participant == nullptr) {

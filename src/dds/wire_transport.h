@@ -26,7 +26,7 @@ struct Wire {
   /// Shortest time between two of the participant's own announcements to one peer. 0: no limit.
   std::chrono::nanoseconds between_announcements{0};
   /// Hears the announcements that come in; null: this is no hub.
-  std::shared_ptr<Introductions> introductions;
+  std::shared_ptr<Introductions> introductions{};
 };
 
 struct WireTransportDescriptor final : eprosima::fastdds::rtps::ChainingTransportDescriptor {
