@@ -41,14 +41,14 @@ struct AuraRules {
   int looks() const { return looks_once ? 1 : substeps; }
   /// Does a look for contacts also find those that begin before the next look (physics/soft/ahead.h)?
   bool looks_ahead() const { return looks_once && sweeps; }
-  /// Do clusters look ahead for pulls that chain through further regions? Where states are checked such a pull is left
-  /// to a redo: each further hop lets links reach farther, and dense worlds come to be one cluster
+  /// The most hops of a pull for which clusters look ahead. Where states are checked, a pull that chains through a
+  /// third region is left to a redo: each further hop lets links reach farther, and dense worlds come to be one cluster
   /// (docs/decisions/0033-no-pushes.md).
-  bool pulls_chain() const { return !redo; }
+  int most_hops() const { return redo ? 1 : horizon::kMostHops; }
   /// Number of hops by which a cluster looks further ahead than usual before it goes home, and by which auras are
   /// announced earlier. It is 0 where states are checked: in dense worlds, clusters that are in no hurry fill the
   /// neighbours' regions (docs/decisions/0046-home-soon.md).
-  int homeward_hops() const { return pulls_chain() ? horizon::kHomewardHops : 0; }
+  int homeward_hops() const { return redo ? 0 : horizon::kHomewardHops; }
   /// At how many instants of each step of two paths an aura tests whether the bodies touch.
   int instants() const { return looks_ahead() ? 4 : looks(); }
 };

@@ -21,11 +21,6 @@ std::uint64_t square_along(double x, double side_m) {
 
 }  // namespace
 
-void ForeignBodies::clear() {
-  bodies_.clear();
-  oldest_steps_ = most_blur_m_ = 0;
-}
-
 void ForeignBodies::add(const AuraRecord& aura, Step known, Step now, const Aura& rules) {
   const bool asleep = (aura.flags & kAuraAsleep) != 0;
   const bool ghost = (aura.flags & kAuraGhost) != 0;
@@ -46,8 +41,6 @@ void ForeignBodies::add(const AuraRecord& aura, Step known, Step now, const Aura
   f.path.unborn_steps = static_cast<double>(std::max<Step>(0, aura.birth - now));
   f.path.speed_m_s = aura.speed_m_s;
   f.path.blur_m = rounded_within_m(f.path.radius_m);
-  oldest_steps_ = std::max(oldest_steps_, f.path.age_steps);
-  most_blur_m_ = std::max(most_blur_m_, f.path.blur_m);
 }
 
 std::optional<std::uint32_t> ForeignBodies::find(BodyId id) const {
@@ -58,13 +51,6 @@ std::optional<std::uint32_t> ForeignBodies::find(BodyId id) const {
 }
 
 void ForeignBodies::build() {
-  paths_.clear();
-  for (const Foreign& foreign : bodies_) paths_.push_back(foreign.path);
-  near_.build(paths_);
-  form_blocks();
-}
-
-void ForeignBodies::form_blocks() {
   double radii = 0;
   for (const Foreign& foreign : bodies_) radii += foreign.path.radius_m;
   const double side = std::max(kBlockRadii * radii / static_cast<double>(bodies_.size()), 1e-3);

@@ -31,33 +31,25 @@ struct ForeignBlock {
 
 class ForeignBodies {
  public:
-  void clear();
+  void clear() { bodies_.clear(); }
   /// Adds the body of `aura`, as seen in state `now`. `known` is the stamp of the last batch of its source.
   void add(const AuraRecord& aura, Step known, Step now, const Aura& rules);
-  /// Call once after the last add() and before blocks(), near() or find().
+  /// Call once after the last add() and before blocks().
   void build();
 
   std::size_t size() const { return bodies_.size(); }
   const Foreign& operator[](std::uint32_t i) const { return bodies_[i]; }
   std::span<const ForeignBlock> blocks() const { return blocks_; }
-  const NearIndex& near() const { return near_; }
   /// The index of a body; nothing if no aura of it was added.
   std::optional<std::uint32_t> find(BodyId id) const;
-  double oldest_steps() const { return oldest_steps_; }
-  double most_blur_m() const { return most_blur_m_; }
 
  private:
-  void form_blocks();
   void add_block(std::span<const std::uint32_t> bodies);
 
   std::vector<Foreign> bodies_;
-  std::vector<Path> paths_;
-  NearIndex near_;
   std::vector<std::pair<std::uint64_t, std::uint32_t>> order_;  ///< block and body
   std::vector<std::uint32_t> sorted_;
   std::vector<ForeignBlock> blocks_;
-  double oldest_steps_ = 0;
-  double most_blur_m_ = 0;
 };
 
 }  // namespace aurasim::core

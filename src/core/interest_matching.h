@@ -42,17 +42,19 @@ class InterestMatching {
   std::span<const std::uint32_t> near_others() const { return near_others_; }
 
   /// The regions that have to know of body i, because it is near their territory or near a body that they host.
-  Audience audience(std::uint32_t i) const;
+  Audience audience(std::uint32_t i) const {
+    return has_narrow_regions_ && audiences_[i] != kNobodyListens ? kAllListeners : audiences_[i];
+  }
   /// No part of the body's bounding sphere is over its host's region (kNone: its centre is not).
   bool outside(std::uint32_t i) const;
   /// An aura from elsewhere has met the cluster of body i.
-  bool touched(std::uint32_t i) const { return touched_[clusters_.of(i)] != 0; }
+  bool touched(std::uint32_t i) const { return verdict(i).touched; }
   /// A foreign aura may meet the cluster so soon that another node could already be sending bodies here because of it.
   /// A cluster that goes home then would pass them on the way. Only known for bodies outside our region, and where
   /// states are not checked: elsewhere a redo costs less than such clusters that stay.
-  bool expected(std::uint32_t i) const { return expected_[clusters_.of(i)] != 0; }
+  bool expected(std::uint32_t i) const { return verdict(i).expected; }
   /// The lowest host among the auras that met the cluster, if it is lower than ours; otherwise our own region.
-  RegionId pulled_to(std::uint32_t i) const { return pulled_to_[clusters_.of(i)]; }
+  RegionId pulled_to(std::uint32_t i) const { return verdict(i).pulled_to; }
 
   std::span<const Pair> pairs() const { return pairs_; }
   const Foreign& foreign(std::uint32_t i) const { return foreign_[i]; }
@@ -73,40 +75,37 @@ class InterestMatching {
     std::uint32_t own;
   };
 
+  /// What foreign auras make of a cluster.
+  struct Verdict {
+    RegionId pulled_to;
+    bool touched = false;
+    bool expected = false;
+  };
+  const Verdict& verdict(std::uint32_t i) const { return verdicts_[clusters_.of(i)]; }
+
   void clear_marks();
-  void clear_judged();
-  void note_near_others();
+  void clear_verdicts();
   void form_clusters(const Snapshot& snapshot);
   void gather_foreign(const Snapshot& snapshot, std::span<const Neighbour> neighbours,
                       std::span<const AuraRecord> ghosts);
-  void mark_regions();
-  void complete_near_boundaries();
-  void pair_up();
+  void find_zones();
+  Audience zone_of(std::uint32_t i);
+  bool is_out_alone(const Vec3& p) const;
+  void notice();
   void notice(const ForeignBlock& block);
-  void notice_grown();
-  void notice_again(std::uint32_t own);
-  void note(std::uint32_t own, RegionId host);
-  void take_news();
+  void announce(std::uint32_t own, Audience regions);
   void find_pairs(const ForeignBlock& block);
   bool is_in_range(std::size_t k, const Candidate& own) const;
   Candidate candidate(std::uint32_t own, double speed_m_s, int more_hops) const;
   template <class RangeOf>
-  void take_ranges(const ForeignBlock& block, int least_hops, RangeOf&& range_of);
+  void take_ranges(const ForeignBlock& block, RangeOf&& range_of);
   double widest_range(double speed_m_s) const;
-  template <class Visit>
-  void for_each_foreign_near(std::uint32_t own, Visit&& visit) const;
   void judge();
   void judge(const Pair& pair);
   void judge_expected(const Pair& pair);
   void hit(std::uint32_t own, RegionId host);
   bool pulls_from(RegionId host, RegionId other) const;
-  void complete_hit_clusters();
-  bool pulls_chain() const { return aura_.rules().pulls_chain(); }
   int homeward_hops() const { return aura_.rules().homeward_hops(); }
-  Audience owners_in_zone(std::uint32_t i) const { return pulls_chain() ? zone_of(i) : zones_[i]; }
-  void find_zones();
-  Audience zone_of(std::uint32_t i) const;
-  bool is_out_alone(const Vec3& p) const;
   void bring_together(const Snapshot& snapshot);
   bool meets(const Foreign& foreign, const Path& own, int hops) const;
   double band(double speed_m_s, int hops) const;
@@ -124,7 +123,6 @@ class InterestMatching {
   Clusters clusters_;
   OwnBodies own_;
   std::vector<std::uint32_t> near_others_;
-  std::vector<std::uint64_t> regions_;
   std::vector<RegionId> live_;  ///< neighbours that can take a cluster, ascending
   ForeignBodies foreign_;
   std::vector<Pair> pairs_;
@@ -132,33 +130,21 @@ class InterestMatching {
     Vec3 p_WB;
     double radius_m;
   };
-  std::vector<Place> places_;          ///< of the bodies of the block
-  std::vector<Range> ranges_;          ///< by foreign body of the block, then by hops
-  std::size_t ranges_each_ = 0;        ///< entries of ranges_ for each body
-  int least_hops_ = 0;                 ///< hops of the first of them
-  std::vector<Candidate> candidates_;  ///< our bodies that may be in range of a block
-  struct News {
-    std::uint32_t own;
-    Audience region;
-  };
-  std::vector<News> news_;            ///< our bodies and the regions newly found to have a body near them
-  std::vector<std::uint32_t> grown_;  ///< our bodies whose range has grown
-  std::vector<std::uint32_t> near_;
-  std::vector<std::uint8_t> noticed_;
-  std::vector<Audience> noticed_by_;  ///< hosts of the foreign bodies near each of ours, but for those of zones_
-  std::vector<Audience> zones_;       ///< owners of territory within the zone of each of ours, where pulls do not chain
-  std::vector<std::uint8_t> announced_to_all_;
-  std::vector<std::uint32_t> marked_;  ///< bodies of which one of the three is set
+  std::vector<Place> places_;            ///< of the bodies of the block
+  std::vector<Range> ranges_;            ///< by foreign body of the block, then by hops
+  std::size_t ranges_each_ = 0;          ///< entries of ranges_ for each body, from one hop on
+  std::vector<Candidate> candidates_;    ///< our bodies that may be in range of a block
+  std::vector<Audience> audiences_;      ///< by body: regions that have to know of it
+  std::vector<std::uint8_t> hops_;       ///< by body: how many hops it looks ahead
+  std::vector<std::uint32_t> outside_;   ///< our bodies outside of our region; ascending
+  std::vector<std::uint32_t> announced_; ///< bodies that others have to know of for other reasons than their place
   struct Hit {
     std::uint32_t own;
     RegionId host;
   };
-  std::vector<Hit> hits_;               ///< our bodies that met an aura, and its host
-  std::vector<std::uint8_t> touched_;   ///< by cluster
-  std::vector<std::uint8_t> expected_;  ///< by cluster
-  std::vector<RegionId> pulled_to_;     ///< by cluster
-  std::vector<std::uint32_t> judged_;   ///< clusters of which one of the three is set
-  double widest_band_m_ = 0;            ///< beyond it, no body is near another region
+  std::vector<Hit> hits_;              ///< our bodies that met an aura, and its host
+  std::vector<Verdict> verdicts_;      ///< by cluster
+  std::vector<std::uint32_t> judged_;  ///< clusters of which the verdict says something
   double others_top_speed_ = 0;
   double others_top_radius_ = 0;
 };

@@ -42,29 +42,24 @@ void InterestMatching::judge() {
     hits_.push_back({pair.own, foreign_[pair.foreign].host});
     hit(pair.own, foreign_[pair.foreign].host);
   }
-  if (pulls_chain()) {
-    for (const Pair& pair : pairs_) judge_expected(pair);
-  } else {
-    complete_hit_clusters();
-  }
-}
-
-/// Completes the clusters that an aura met, and those that may have to go home. Their bodies were judged as members of
-/// smaller clusters, held together by contacts and joints only.
-void InterestMatching::complete_hit_clusters() {
+  // The bodies were judged as members of smaller clusters, held together by contacts and joints only.
   for (const Hit& hit : hits_) clusters_.complete(hit.own);
-  complete_near_boundaries();
-  clear_judged();
+  for (const std::uint32_t i : outside_) clusters_.complete(i);
+  for (const std::uint32_t i : expecting_) clusters_.complete(i);
+  clear_verdicts();
   for (const Hit& each : hits_) hit(each.own, each.host);
+  if (homeward_hops() == 0) return;
+  for (const Pair& pair : pairs_) judge_expected(pair);
 }
 
 /// Notes that an aura of `host` met the cluster of body `own`. The host keeps the foreign body, or our cluster goes to
 /// it.
 void InterestMatching::hit(std::uint32_t own, RegionId host) {
   const std::uint32_t cluster = clusters_.of(own);
-  touched_[cluster] = 1;
+  Verdict& verdict = verdicts_[cluster];
+  verdict.touched = true;
   judged_.push_back(cluster);
-  if (pulls_from(host, pulled_to_[cluster])) pulled_to_[cluster] = host;
+  if (pulls_from(host, verdict.pulled_to)) verdict.pulled_to = host;
 }
 
 bool InterestMatching::meets(const Foreign& foreign, const Path& own, int hops) const {
@@ -73,22 +68,17 @@ bool InterestMatching::meets(const Foreign& foreign, const Path& own, int hops) 
 
 void InterestMatching::judge(const Pair& pair) {
   const Foreign& f = foreign_[pair.foreign];
-  const Path& own = own_.path(pair.own);
-  const std::uint32_t cluster = clusters_.of(pair.own);
-  const int hops = clusters_.hops(pair.own);
-  const bool pulls = pulls_from(f.host, pulled_to_[cluster]);
-  if ((touched_[cluster] && !pulls) || !meets(f, own, hops)) return;
+  const bool pulls = pulls_from(f.host, pulled_to(pair.own));
+  if ((touched(pair.own) && !pulls) || !meets(f, own_.path(pair.own), hops_[pair.own])) return;
   hits_.push_back({pair.own, f.host});
   hit(pair.own, f.host);
 }
 
 void InterestMatching::judge_expected(const Pair& pair) {
-  const std::uint32_t cluster = clusters_.of(pair.own);
-  if (!outside(pair.own) || touched_[cluster] || expected_[cluster]) return;
-  const int hops = clusters_.hops(pair.own) + homeward_hops();
-  if (!meets(foreign_[pair.foreign], own_.path(pair.own), hops)) return;
-  expected_[cluster] = 1;
-  judged_.push_back(cluster);
+  if (!outside(pair.own) || touched(pair.own) || expected(pair.own)) return;
+  if (!meets(foreign_[pair.foreign], own_.path(pair.own), hops_[pair.own] + homeward_hops())) return;
+  verdicts_[clusters_.of(pair.own)].expected = true;
+  judged_.push_back(clusters_.of(pair.own));
 }
 
 }  // namespace aurasim::core

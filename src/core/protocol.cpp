@@ -304,9 +304,9 @@ std::vector<RegionId> assign_hosts(const RegionMap& map, const AuraRules& rules,
     paths.push_back(path_of(body, scene.step, clearance));
     paths.back().speed_m_s = aura->speed_of(body);
   }
-  const std::vector<std::uint64_t> no_regions(scene.bodies.size(), 0);
+  const std::vector<std::uint8_t> one_hop(scene.bodies.size(), 1);
   Clusters clusters(*aura);
-  clusters.begin(paths, no_regions, scene.contacts, scene.joints);
+  clusters.begin(paths, one_hop, scene.contacts, scene.joints);
   for (std::uint32_t i = 0; i < hosts.size(); ++i) clusters.complete(i);
   for (std::uint32_t i = 0; i < hosts.size(); ++i) {
     RegionId lowest = hosts[i];

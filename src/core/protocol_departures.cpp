@@ -62,9 +62,7 @@ void Protocol::decide_for_clusters(const Snapshot& snapshot) {
 void Protocol::list_complete_clusters() {
   const Clusters& clusters = matching_.clusters();
   complete_.clear();
-  for (const std::uint32_t i : clusters.completed()) {
-    if (clusters.is_complete(i)) complete_.push_back({0, clusters.of(i)});
-  }
+  for (const std::uint32_t i : clusters.completed()) complete_.push_back({0, clusters.of(i)});
   std::ranges::sort(complete_, {}, &CompleteCluster::cluster);
   const auto twins = std::ranges::unique(complete_, {}, &CompleteCluster::cluster);
   complete_.erase(twins.begin(), twins.end());

@@ -26,7 +26,7 @@ class ClusterTest : public ::testing::Test {
     state.v_WB = v;
     paths.push_back(path_of(state, 0, shapes));
     paths.back().speed_m_s = aura().speed_of(state);
-    regions.push_back(0);
+    hops.push_back(1);
     return static_cast<std::uint32_t>(paths.size() - 1);
   }
   void contact(std::uint32_t a, std::uint32_t b) { contacts.push_back({std::min(a, b), std::max(a, b)}); }
@@ -38,7 +38,7 @@ class ClusterTest : public ::testing::Test {
   }
   Clusters& begin() {
     clusters.emplace(aura());
-    clusters->begin(paths, regions, contacts, joints);
+    clusters->begin(paths, hops, contacts, joints);
     return *clusters;
   }
   Clusters& complete_all() {
@@ -68,7 +68,7 @@ class ClusterTest : public ::testing::Test {
 
   void place_random_scene(Random& random) {
     const std::array kinds = {ball, big};
-    paths.clear(), regions.clear(), contacts.clear(), joints.clear();
+    paths.clear(), hops.clear(), contacts.clear(), joints.clear();
     const std::uint32_t count = 2 + random.below(60);
     const double box = random.between(3, 12);
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -87,7 +87,7 @@ class ClusterTest : public ::testing::Test {
   PrototypeId ball = shapes.sphere(0.4);
   PrototypeId big = shapes.sphere(3);
   std::vector<Path> paths;
-  std::vector<std::uint64_t> regions;
+  std::vector<std::uint8_t> hops;
   std::vector<Contact> contacts, joints;
   std::optional<Clusters> clusters;
 
@@ -138,33 +138,13 @@ TEST_F(ClusterTest, TheNaiveControlKnowsNoClusters) {
   EXPECT_FALSE(together(a, b));
 }
 
-TEST_F(ClusterTest, HasAtLeastOneHopAndMoreWhereMoreRegionsAreNear) {
-  const auto a = place(Vec3(0, 0, 0)), b = place(Vec3(50, 0, 0));
-  begin();
-  EXPECT_EQ(clusters->hops(a), 1);
-  EXPECT_TRUE(clusters->add_regions(a, 0b1));
-  EXPECT_EQ(clusters->hops(a), 1);
-  EXPECT_TRUE(clusters->add_regions(a, 0b100));
-  EXPECT_GE(clusters->hops(a), 2);
-  EXPECT_GE(clusters->most_hops(), clusters->hops(a));
-  EXPECT_EQ(clusters->hops(b), 1);
-  EXPECT_FALSE(clusters->add_regions(a, 0b101)) << "nothing new";
-}
-
-TEST_F(ClusterTest, HasOneHopWhereStatesAreChecked) {
-  rules.redo = true;
-  const auto a = place(Vec3(0, 0, 0));
-  begin();
-  EXPECT_TRUE(clusters->add_regions(a, 0b111));
-  EXPECT_EQ(clusters->hops(a), 1);
-}
-
-TEST_F(ClusterTest, ThatLearnsOfAnotherRegionHasToBeCompletedAgain) {
-  const auto a = place(Vec3(0, 0, 0));
+TEST_F(ClusterTest, ReachesFurtherFromABodyThatLooksMoreHopsAhead) {
+  const auto a = place(Vec3(0, 0, 0), Vec3(20, 0, 0)), b = place(Vec3(1.9, 0, 0));
   complete_all();
-  EXPECT_TRUE(clusters->is_complete(a));
-  clusters->add_regions(a, 0b1);
-  EXPECT_FALSE(clusters->is_complete(a));
+  EXPECT_FALSE(together(a, b));
+  hops[b] = 3;
+  complete_all();
+  EXPECT_TRUE(together(a, b));
 }
 
 TEST_F(ClusterTest, EveryMemberIsVisitedOnce) {

@@ -65,7 +65,8 @@ TEST_F(Arrival, GoesHomeOnlyIfNobodyWhoStaysMayMeetItSoon) {
       paths.back().speed_m_s = aura->speed_of(each);
     }
     Clusters clusters(*aura);
-    clusters.begin(paths, std::vector<std::uint64_t>(paths.size()), {}, {});
+    const std::vector<std::uint8_t> hops(paths.size(), 1);
+    clusters.begin(paths, hops, {}, {});
     clusters.complete(0);
     const bool one_cluster = clusters.of(0) == clusters.of(1);
     const bool meets_soon = clusters.any_near(0, horizon::kHomewardHops, [](std::uint32_t) { return true; });
