@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/aura_precision.h"
+#include "core/aura_record.h"
 
 namespace aurasim::core {
 namespace {
@@ -29,18 +29,11 @@ void ForeignBodies::add(const AuraRecord& aura, Step known, Step now, const Aura
   f.host = aura.host;
   f.ghost = ghost;
   f.born = aura.birth <= aura.stamp;
-  f.path.prototype = aura.prototype;
-  f.path.radius_m = rules.clearance().bounding_radius(aura.prototype);
-  f.path.pose = aura.pose;
-  f.path.v_WB = aura.v_WB;
-  f.path.w_WB = aura.w_WB;
-  f.path.moves = !asleep;
+  f.path = path_of(aura, rules.clearance());
   // An aura of a sleeping body is as fresh as its source's last batch. A ghost's aura is as old as its stamp.
   f.path.age_steps =
       static_cast<double>(std::max<Step>(0, now - std::max(asleep && !ghost ? known : aura.stamp, aura.birth)));
   f.path.unborn_steps = static_cast<double>(std::max<Step>(0, aura.birth - now));
-  f.path.speed_m_s = aura.speed_m_s;
-  f.path.blur_m = rounded_within_m(f.path.radius_m);
 }
 
 std::optional<std::uint32_t> ForeignBodies::find(BodyId id) const {

@@ -28,19 +28,14 @@ constexpr std::size_t kPrefetchDistance = 8;
 }  // namespace
 
 void Projection::follow(const Snapshot& snapshot) {
-  goes_on_ = snapshot.goes_on_from(seen_);
-  seen_ = snapshot.number;
-  if (goes_on_) return;
   const auto same = [](const Track& track, const BodyState& body) {
     return track.id == body.id && track.epoch == body.epoch;
   };
   if (std::equal(tracks_.begin(), tracks_.end(), snapshot.bodies.begin(), snapshot.bodies.end(), same)) return;
   std::swap(tracks_, before_);
   tracks_.clear();
-  ids_.clear();
   auto old = before_.begin();
   for (const BodyState& body : snapshot.bodies) {
-    ids_.push_back(body.id);
     for (; old != before_.end() && old->id < body.id; ++old) note_gone(*old);
     if (old != before_.end() && old->id == body.id && old->epoch == body.epoch) {
       tracks_.push_back(std::move(*old));
@@ -67,11 +62,6 @@ void Projection::take_back_gone(AuraBatch& batch) {
     batch.deletes.push_back(id);
   }
   gone_.clear();
-}
-
-const Track* Projection::find(BodyId id) const {
-  const auto found = std::lower_bound(ids_.begin(), ids_.end(), id);
-  return found != ids_.end() && *found == id ? &tracks_[static_cast<std::size_t>(found - ids_.begin())] : nullptr;
 }
 
 void Projection::move(Track& track, PhaseEvent event) {
@@ -102,11 +92,13 @@ void Projection::publish(Track& track, const AuraRecord& aura, AuraBatch& batch,
 }
 
 void Projection::classify(const Snapshot& snapshot, const InterestMatching& matching) {
+  goes_on_ = matching.own().goes_on();
   if (goes_on_) {
     note_busy(matching);
     for (const std::uint32_t i : busy_) classify(i, matching);
     return;
   }
+  follow(snapshot);
   busy_.clear();
   for (std::uint32_t i = 0; i < snapshot.bodies.size(); ++i) {
     classify(i, matching);
@@ -188,8 +180,8 @@ void Projection::keep_newest_ghosts() {
 void Projection::expire_ghosts(const Snapshot& snapshot, AuraBatch& batch) {
   keep_newest_ghosts();
   std::erase_if(ghosts_, [&](const AuraRecord& ghost) {
-    const Track* here = find(ghost.id);
-    if (here && here->phase != Phase::kSent) {
+    const auto here = std::ranges::lower_bound(tracks_, ghost.id, {}, &Track::id);
+    if (here != tracks_.end() && here->id == ghost.id && here->phase != Phase::kSent) {
       if (!here->projected()) {
         ++counters_.deleted;
         batch.deletes.push_back(ghost.id);
@@ -210,11 +202,7 @@ void Projection::check_promise(Track& track, const BodyState& body, Step now, Vi
   const AuraRecord& promise = track.published->promise;
   const auto age = static_cast<double>(now - promise.stamp);
   if (age < static_cast<double>(horizon::promise(aura_.rules().lookahead))) return;
-  Path path;
-  path.pose = promise.pose;
-  path.v_WB = promise.v_WB;  // how it turns does not matter
-  path.moves = (promise.flags & kAuraAsleep) == 0;
-  path.unborn_steps = static_cast<double>(std::max<Step>(0, promise.birth - promise.stamp));
+  Path path = path_of(promise, aura_.clearance());
   const double off = (aura_.ahead(path, age).p_WB - body.pose.p_WB).norm();
   double allowed =
       aura_.rules().contact_margin_m + aura_.rules().uncertainty * promise.speed_m_s * age * aura_.rules().step_s;

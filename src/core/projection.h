@@ -45,14 +45,11 @@ class Projection {
  public:
   Projection(const Aura& aura, const Vicinity& vicinity) : aura_(aura), vicinity_(vicinity) {}
 
-  /// Matches the tracks to the bodies of a state. New bodies start as kInjected.
-  void follow(const Snapshot& snapshot);
-
+  /// By index of the last snapshot.
   Track& track(std::uint32_t i) { return tracks_[i]; }
-  /// The track of a body; null if it was not hosted here in the last state.
-  const Track* find(BodyId id) const;
+  const Track& track(std::uint32_t i) const { return tracks_[i]; }
 
-  /// Moves each body to the phase that follows from its place, and decides to whom its aura goes. Bodies that are deep
+  /// Matches the tracks to the bodies of a state; new bodies start as kInjected. Moves each body to the phase that follows from its place, and decides to whom its aura goes. Bodies that are deep
   /// inside, as they were before, are not looked at.
   void classify(const Snapshot& snapshot, const InterestMatching& matching);
 
@@ -70,6 +67,7 @@ class Projection {
  private:
   void move(Track& track, PhaseEvent event);
   void publish(Track& track, const AuraRecord& aura, AuraBatch& batch, bool full);
+  void follow(const Snapshot& snapshot);
   void note_gone(const Track& track);
   void classify(std::uint32_t i, const InterestMatching& matching);
   void note_busy(const InterestMatching& matching);
@@ -85,8 +83,6 @@ class Projection {
   const Aura& aura_;
   const Vicinity& vicinity_;
   std::vector<Track> tracks_, before_;  ///< ascending id
-  std::vector<BodyId> ids_;             ///< ids of tracks_, in one array for fast look-up
-  std::uint64_t seen_ = 0;              ///< number of the last snapshot
   bool goes_on_ = false;                ///< the last snapshot has named what differs from the one before
   std::vector<std::uint32_t> busy_;     ///< bodies that may project, or have; ascending
   std::vector<std::uint32_t> were_busy_;

@@ -91,7 +91,7 @@ const Changes& Protocol::receive(Step n, Joining joining) {
 /// epoch is higher; then the one here is let go.
 void Protocol::take_if_newer(Adoption& adoption) {
   remove_bodies(adoption.cluster, [this](const BodyRecord& body) {
-    const Track* here = projection_.find(body.id);
+    const Track* here = find(body.id);
     const bool gone = !here || here->phase == Phase::kSent;
     if (!gone && here->epoch >= body.epoch) {
       ++counters_.stale_arrivals;
@@ -107,7 +107,7 @@ void Protocol::let_go_of_what_others_own() {
   for (const Neighbour& neighbour : intake_.neighbours()) {
     for (const AuraRecord& aura : neighbour.auras()) {
       if (aura.host == vicinity_.self) continue;
-      const Track* here = projection_.find(aura.id);
+      const Track* here = find(aura.id);
       if (here && here->phase != Phase::kSent && here->epoch < aura.epoch) let_go(aura.id);
     }
   }
@@ -131,18 +131,26 @@ void Protocol::receive_violations() {
   last_violation_step_ = std::max(last_violation_step_, violations_.last_step());
 }
 
-const std::vector<Departure>& Protocol::observe(const Snapshot& snapshot) {
+const Track* Protocol::find(BodyId id) const {
+  const std::optional<std::uint32_t> here = matching_.own().find(id);
+  return here ? &projection_.track(*here) : nullptr;
+}
+
+void Protocol::look(const Snapshot& snapshot) {
   outbox_.clear();
   departing_.clear();
-  outbox_.aura.stamp = snapshot.step;
-  projection_.follow(snapshot);
-  const bool has_gathered = settings_.redo > 0 && snapshot.step == settings_.start + 1;
-  full_ = listening_.begin(snapshot.step) || snapshot.step == settings_.start || has_gathered;
   Progress::mark();
   matching_.look(snapshot, intake_.neighbours(), projection_.ghosts());
   Progress::mark();
-  check(snapshot);
   projection_.classify(snapshot, matching_);
+}
+
+const std::vector<Departure>& Protocol::observe(const Snapshot& snapshot) {
+  const bool has_gathered = settings_.redo > 0 && snapshot.step == settings_.start + 1;
+  full_ = listening_.begin(snapshot.step) || snapshot.step == settings_.start || has_gathered;
+  look(snapshot);
+  outbox_.aura.stamp = snapshot.step;
+  check(snapshot);
   decide(snapshot);
   projection_.publish(snapshot, outbox_.aura, violations_, full_);
   last_violation_step_ = std::max(last_violation_step_, violations_.last_step());
@@ -153,12 +161,8 @@ const std::vector<Departure>& Protocol::observe(const Snapshot& snapshot) {
 /// The next batch is full, so it tells who has left.
 const std::vector<Departure>& Protocol::gather(const Snapshot& snapshot) {
   gathers_ = false;
-  outbox_.clear();
-  departing_.clear();
   intake_.take_start();
-  projection_.follow(snapshot);
-  matching_.look(snapshot, intake_.neighbours(), projection_.ghosts());
-  projection_.classify(snapshot, matching_);
+  look(snapshot);
   decide(snapshot);
   outbox_.aura = {};
   sign(outbox_.aura);

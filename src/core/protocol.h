@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -192,6 +193,8 @@ class Protocol {
   const Intake& intake() const { return intake_; }
   const InterestMatching& matching() const { return matching_; }
   const Projection& projection() const { return projection_; }
+  /// The track of a body; null if it was not hosted here in the last state.
+  const Track* find(BodyId id) const;
   const DepartureLedger& departures() const { return departures_; }
   const ProtocolCounters& counters() const { return counters_; }
   const ViolationLog& violations() const { return violations_; }
@@ -205,6 +208,7 @@ class Protocol {
   void let_go_of_what_others_own();
   void let_go(BodyId id);
   void apply_late(Order& order, Step n);
+  void look(const Snapshot& snapshot);
   void decide(const Snapshot& snapshot);
   void decide_for_clusters(const Snapshot& snapshot);
   void list_complete_clusters();

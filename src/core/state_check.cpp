@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/aura_precision.h"
+#include "core/aura_record.h"
 #include "core/horizon.h"
 #include "core/interest_matching.h"
 #include "core/progress.h"
@@ -55,17 +56,7 @@ StateCheck::State& StateCheck::state(Step step) {
 
 void StateCheck::add(const AuraRecord& aura, Step step, std::uint32_t world) {
   if (step < checked_ || step <= whole_) return;
-  Sighting& seen = state(step).others.emplace_back();
-  seen.id = aura.id;
-  seen.world = world;
-  seen.born = aura.birth <= step;
-  seen.path.prototype = aura.prototype;
-  seen.path.radius_m = aura_.clearance().bounding_radius(aura.prototype);
-  seen.path.pose = aura.pose;
-  seen.path.v_WB = aura.v_WB;
-  seen.path.w_WB = aura.w_WB;
-  seen.path.moves = (aura.flags & kAuraAsleep) == 0;
-  seen.path.blur_m = rounded_within_m(seen.path.radius_m);
+  state(step).others.push_back({aura.id, world, path_of(aura, aura_.clearance()), aura.birth <= step});
 }
 
 void StateCheck::take(const Neighbour& neighbour) {
@@ -320,9 +311,21 @@ void StateCheck::check(Step step) {
     for (const Way& way : others_) compare_with_resting(way);
   }
   std::ranges::sort(found_, {}, [](const Alarm& alarm) { return std::tuple(alarm.step, alarm.a, alarm.b); });
+  compare_guests();
+}
+
+/// Compares bodies of other worlds with each other. One that is over its host's region is left to that host, to which
+/// whatever may touch it there is announced, too (docs/design.md, "To whom an aura goes").
+void StateCheck::compare_guests() {
+  std::erase_if(others_, [this](const Way& way) {
+    const Vec3& p = way.now->path.pose.p_WB;
+    return way.now->world < kFirstLonely && vicinity_.map.region(RegionId{way.now->world}).contains(p.x(), p.y());
+  });
   const bool several =
       std::ranges::any_of(others_, [this](const Way& way) { return way.now->world != others_.front().now->world; });
-  for (std::uint32_t i = 0; several && i < others_.size(); ++i) compare_with_others(others_[i], i + 1);
+  if (!several) return;
+  cover_others();
+  for (std::uint32_t i = 0; i < others_.size(); ++i) compare_with_others(others_[i], i + 1);
 }
 
 }  // namespace aurasim::core

@@ -77,6 +77,7 @@ class StateCheck {
   void note_before(BodyId id, const Path& before, Step noted, Step now);
   void add_own(BodyId id, const Path& path, State& to) const;
   void compare_with_resting(const Way& other);
+  void compare_guests();
   void add(const AuraRecord& aura, Step step, std::uint32_t world);
   void check(Step step);
   void forget();

@@ -15,14 +15,6 @@ constexpr double kSlop = 0.02;
 /// Number of states after its birth in which a body's overlaps do not count, because the scene made it appear there.
 constexpr core::Step kYoungSteps = 2;
 
-/// Index of a body in a snapshot, if it is there.
-std::optional<std::uint32_t> index_of(const core::Snapshot& snapshot, core::BodyId id) {
-  const auto found = std::lower_bound(snapshot.bodies.begin(), snapshot.bodies.end(), id,
-                                      [](const core::BodyState& b, core::BodyId x) { return b.id < x; });
-  if (found == snapshot.bodies.end() || found->id != id) return std::nullopt;
-  return static_cast<std::uint32_t>(found - snapshot.bodies.begin());
-}
-
 bool touch(const core::Snapshot& snapshot, std::uint32_t i, std::uint32_t j) {
   const auto [a, b] = std::minmax(i, j);
   return std::binary_search(
@@ -120,8 +112,8 @@ bool CollisionWatch::came_together(const Pair& pair, const std::vector<Joined>& 
 }
 
 /// Forgets pairs of which a body has left, even if it has come back: it may have moved meanwhile.
-void CollisionWatch::forget_parted(const core::Snapshot& snapshot) {
-  const auto stays = [&](core::BodyId id) { return index_of(snapshot, id) && !find(joined_, id); };
+void CollisionWatch::forget_parted(const core::OwnBodies& own) {
+  const auto stays = [&](core::BodyId id) { return own.find(id) && !find(joined_, id); };
   std::erase_if(untouching_, [&](const Pair& pair) { return !stays(pair.first) || !stays(pair.second); });
 }
 
@@ -146,9 +138,9 @@ std::optional<SeenCollision> CollisionWatch::overlap_of(std::uint32_t i, std::ui
 void CollisionWatch::judge_arrivals(const core::Snapshot& snapshot, const core::InterestMatching& matching,
                                     core::Step last_violation, std::vector<SeenCollision>& out) {
   sort_joined();
-  forget_parted(snapshot);
+  forget_parted(matching.own());
   for (const Joined& arrival : joined_) {
-    const std::optional<std::uint32_t> here = index_of(snapshot, arrival.id);
+    const std::optional<std::uint32_t> here = matching.own().find(arrival.id);
     if (!here) continue;
     const core::Path& path = matching.path(*here);
     matching.clusters().near().for_each_near(

@@ -92,7 +92,7 @@ class CollisionWatch {
   const core::Pose* remembered(core::Step step, core::BodyId id) const;
   static const Joined* find(const std::vector<Joined>& joined, core::BodyId id);
   static bool came_together(const Pair& pair, const std::vector<Joined>& joined);
-  void forget_parted(const core::Snapshot& snapshot);
+  void forget_parted(const core::OwnBodies& own);
   void forget_grown_up(core::Step now);
   void forget_separated(core::Step now);
   std::optional<SeenCollision> overlap_of(std::uint32_t i, std::uint32_t j, const core::Snapshot& snapshot,

@@ -143,7 +143,7 @@ TEST_P(ProjectionTest, ABodyFarFromEveryBoundaryIsItsHostsAlone) {
   world->start();
   world->run_steps(10);
   EXPECT_EQ(counters(kWest).created, 0u);
-  EXPECT_EQ(world->protocol(kWest).projection().find(kBody)->phase, Phase::kHostRegion);
+  EXPECT_EQ(world->protocol(kWest).find(kBody)->phase, Phase::kHostRegion);
 }
 
 TEST_P(ProjectionTest, ABodyOnACornerIsSeenByAllThreeNeighbours) {
@@ -185,7 +185,7 @@ TEST_P(ProjectionTest, ABodyOutsideItsRegionIsKnownToAllListeners) {
   make_world(RegionMap::columns(3, 100));
   place_flying(kBody, Vec3(-50.6, 0, 0), Vec3(12, 0, 0));
   world->start();
-  while (world->protocol(kWest).projection().find(kBody)->phase != Phase::kBoundaryTraversed) world->step();
+  while (world->protocol(kWest).find(kBody)->phase != Phase::kBoundaryTraversed) world->step();
   EXPECT_EQ(update_of(kBody, kWest)->audience, kAllListeners);
   world->run_steps(k());
   EXPECT_TRUE(known_to(kRight).contains(kBody)) << "it may host bodies over the middle region, too";
@@ -197,7 +197,7 @@ TEST_P(ProjectionTest, WhereStatesAreCheckedABodyOutsideItsRegionGoesToThoseInWh
   make_world(RegionMap::columns(3, 100));
   place_flying(kBody, Vec3(-50.6, 0, 0), Vec3(12, 0, 0));
   world->start();
-  while (world->protocol(kWest).projection().find(kBody)->phase != Phase::kBoundaryTraversed) world->step();
+  while (world->protocol(kWest).find(kBody)->phase != Phase::kBoundaryTraversed) world->step();
   EXPECT_EQ(update_of(kBody, kWest)->audience, audience_of(kMiddle));
 }
 
@@ -231,7 +231,7 @@ TEST_P(ProjectionTest, ABodyGoesHomeAfterAnIslandOf2KPlus1Steps) {
   Step outside = -1;
   while (outside < 0) {
     world->step();
-    const Phase phase = world->protocol(kWest).projection().find(kBody)->phase;
+    const Phase phase = world->protocol(kWest).find(kBody)->phase;
     if (phase == Phase::kBoundaryTraversed) outside = world->now();
   }
   EXPECT_GE(-2.01 + 0.1 * static_cast<double>(outside), 0.5) << "wholly outside: its bounding sphere is";

@@ -128,7 +128,7 @@ TEST_P(RandomWalk, EveryBodyHasOneHostOrIsUnderWayAndEpochsRiseByOne) {
     std::size_t hosted = 0, under_way = 0;
     for (std::uint32_t r = 0; r < 4; ++r) {
       for (std::uint64_t i = 0; i < kBodies; ++i) {
-        const Track* track = world->protocol(RegionId{r}).projection().find(BodyId{i});
+        const Track* track = world->protocol(RegionId{r}).find(BodyId{i});
         hosted += track && track->phase != Phase::kSent;
       }
     }

@@ -2,6 +2,8 @@
 #include "core/state_check.h"
 
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,14 +27,14 @@ AuraRules rules_of_check() {
   return rules;
 }
 
-/// We are the left of two columns; body 1 is ours and stands at the border, the others are of region 1.
+/// We are the left of three columns; body 1 is ours and stands at the border, the others are of region 1.
 class TheCheck : public ::testing::Test {
  protected:
   void publish(Step stamp, std::vector<AuraRecord> updates, std::uint32_t source = 1) {
     AuraBatch sent = batch(source, stamp);
     sent.full = stamp == 0;
     sent.updates = std::move(updates);
-    neighbours_.at(source - 1).accept(std::move(sent), [this](const Neighbour& now) { check_.take(now); });
+    neighbours_.at(source - 1).accept(std::move(sent), [this](const Neighbour& now) { check_->take(now); });
   }
   AuraRecord body(std::uint64_t id, Step stamp, const Vec3& p, const Vec3& v = Vec3::Zero()) const {
     AuraRecord record;
@@ -52,19 +54,32 @@ class TheCheck : public ::testing::Test {
     ours.prototype = ball_;
     ours.pose.p_WB = ours_at_;
     matching_.look(own, {}, {});
-    check_.take_own(own, matching_);
-    check_.look(step, neighbours_);
-    return check_.found();
+    check_->take_own(own, matching_);
+    check_->look(step, neighbours_);
+    return check_->found();
+  }
+
+  /// What the check of states 0 and 1 finds where region 1 hosts body 2 at `a`, and region 2 hosts body 3 at `b`.
+  std::vector<Alarm> touch_of_two(const Vec3& a, const Vec3& b) {
+    neighbours_ = {Neighbour(region(1), region(0)), Neighbour(region(2), region(0))};
+    check_.emplace(*aura_, vicinity_, 0);
+    ours_at_ = {-8, 0, 0};
+    for (Step step = 0; step < 2; ++step) {
+      publish(step, {body(2, step, a)});
+      publish(step, {body(3, step, b)}, 2);
+      look(step + 1);
+    }
+    return {check_->found().begin(), check_->found().end()};
   }
 
   Vec3 ours_at_{-0.2, 0, 0};
   RoundShapes shapes_;
   PrototypeId ball_ = shapes_.sphere(0.5);
-  RegionMap map_ = RegionMap::columns(2, 10);
+  RegionMap map_ = RegionMap::boxes({{-10, -5, 0, 5}, {0, -5, 10, 5}, {10, -5, 20, 5}});
   Vicinity vicinity_{map_, RegionId{0}, 0};
   std::unique_ptr<const Aura> aura_ = make_aura(rules_of_check(), shapes_);
   InterestMatching matching_{*aura_, vicinity_};
-  StateCheck check_{*aura_, vicinity_, 0};
+  std::optional<StateCheck> check_{std::in_place, *aura_, vicinity_, 0};
   std::vector<Neighbour> neighbours_ = {Neighbour(region(1), region(0))};
 };
 
@@ -73,7 +88,7 @@ TEST_F(TheCheck, FindsNothingBetweenBodiesThatAreApart) {
     publish(step, {body(2, step, {1.2, 0, 0})});
     EXPECT_THAT(look(step + 1), IsEmpty());
   }
-  EXPECT_EQ(check_.checked(), 3) << "a state later, for K = 1";
+  EXPECT_EQ(check_->checked(), 3) << "a state later, for K = 1";
 }
 
 TEST_F(TheCheck, FindsATouchInTheStateAfterTheOneInWhichTheyAreThatNear) {
@@ -119,20 +134,16 @@ TEST_F(TheCheck, SaysNothingOfTwoThatOneNeighbourHosts) {
 
 /// Hosts announce a body outside their region to the owner of its place, and not to all others who host bodies there.
 TEST_F(TheCheck, FindsATouchOfTwoThatTwoNeighboursHostOverOurRegion) {
-  neighbours_.emplace_back(region(2), region(0));
-  ours_at_ = {-8, 0, 0};
-  AuraRecord other = body(3, 0, {-3.1, 0, 0});
-  other.host = RegionId{2};
-  for (Step step = 0; step < 2; ++step) {
-    other.stamp = step;
-    publish(step, {body(2, step, {-4, 0, 0})});
-    publish(step, {other}, 2);
-    look(step + 1);
-  }
-  const auto found = check_.found();
+  const auto found = touch_of_two({-4, 0, 0}, {-3.1, 0, 0});
   ASSERT_THAT(found, SizeIs(1));
   EXPECT_EQ(found[0].a, BodyId{2});
   EXPECT_EQ(found[0].b, BodyId{3});
+}
+
+/// Its host compares it with all that is near it.
+TEST_F(TheCheck, LeavesABodyThatIsAtHomeToItsHost) {
+  EXPECT_THAT(touch_of_two({4, 0, 0}, {4.9, 0, 0}), IsEmpty());
+  EXPECT_THAT(touch_of_two({12, 0, 0}, {12.9, 0, 0}), IsEmpty());
 }
 
 TEST_F(TheCheck, KnowsThatABodyTouchesNothingBeforeTheStateAfterItsBirth) {
@@ -154,8 +165,8 @@ TEST_F(TheCheck, TakesABodyThatMadeUpAStateAloneForOneInAnotherWorld) {
   look(0);
   publish(0, {});
   look(1);
-  check_.take_made_up(late, 0, 0);
-  check_.take_made_up(late, 1, 0);
+  check_->take_made_up(late, 0, 0);
+  check_->take_made_up(late, 1, 0);
   publish(1, {});
   EXPECT_THAT(look(2), SizeIs(1));
 }
@@ -168,8 +179,8 @@ TEST_F(TheCheck, TakesClustersThatMadeUpAStateForSeveralWorldsWheneverTheyJoin) 
   look(0);
   publish(0, {});
   look(1);
-  for (const Step step : {0, 1}) check_.take_made_up(one, step, 0);
-  for (const Step step : {0, 1}) check_.take_made_up(other, step, 1);
+  for (const Step step : {0, 1}) check_->take_made_up(one, step, 0);
+  for (const Step step : {0, 1}) check_->take_made_up(other, step, 1);
   publish(1, {});
   EXPECT_THAT(look(2), SizeIs(1));
 }
