@@ -16,8 +16,8 @@ class Clusters {
  public:
   explicit Clusters(const Aura& aura) : aura_(aura) {}
 
-  /// Starts a step: one cluster per group of bodies connected by `contacts` or `joints`. `hops[i]`: how many hops body i
-  /// looks ahead (docs/design.md, "Who leaves"). The caller owns `paths` and `hops`.
+  /// Starts a step: one cluster per group of bodies connected by `contacts` or `joints`. `hops[i]`: how many hops body
+  /// i looks ahead (docs/design.md, "Who leaves"). The caller owns `paths` and `hops`.
   void begin(std::span<const Path> paths, std::span<const std::uint8_t> hops, std::span<const Contact> contacts,
              std::span<const Contact> joints);
 

@@ -130,14 +130,14 @@ class InterestMatching {
     Vec3 p_WB;
     double radius_m;
   };
-  std::vector<Place> places_;            ///< of the bodies of the block
-  std::vector<Range> ranges_;            ///< by foreign body of the block, then by hops
-  std::size_t ranges_each_ = 0;          ///< entries of ranges_ for each body, from one hop on
-  std::vector<Candidate> candidates_;    ///< our bodies that may be in range of a block
-  std::vector<Audience> audiences_;      ///< by body: regions that have to know of it
-  std::vector<std::uint8_t> hops_;       ///< by body: how many hops it looks ahead
-  std::vector<std::uint32_t> outside_;   ///< our bodies outside of our region; ascending
-  std::vector<std::uint32_t> announced_; ///< bodies that others have to know of for other reasons than their place
+  std::vector<Place> places_;             ///< of the bodies of the block
+  std::vector<Range> ranges_;             ///< by foreign body of the block, then by hops
+  std::size_t ranges_each_ = 0;           ///< entries of ranges_ for each body, from one hop on
+  std::vector<Candidate> candidates_;     ///< our bodies that may be in range of a block
+  std::vector<Audience> audiences_;       ///< by body: regions that have to know of it
+  std::vector<std::uint8_t> hops_;        ///< by body: how many hops it looks ahead
+  std::vector<std::uint32_t> outside_;    ///< our bodies outside of our region; ascending
+  std::vector<std::uint32_t> announced_;  ///< bodies that others have to know of for other reasons than their place
   struct Hit {
     std::uint32_t own;
     RegionId host;

@@ -49,8 +49,9 @@ class Projection {
   Track& track(std::uint32_t i) { return tracks_[i]; }
   const Track& track(std::uint32_t i) const { return tracks_[i]; }
 
-  /// Matches the tracks to the bodies of a state; new bodies start as kInjected. Moves each body to the phase that follows from its place, and decides to whom its aura goes. Bodies that are deep
-  /// inside, as they were before, are not looked at.
+  /// Matches the tracks to the bodies of a state; new bodies start as kInjected. Moves each body to the phase that
+  /// follows from its place, and decides to whom its aura goes. Bodies that are deep inside, as they were before, are
+  /// not looked at.
   void classify(const Snapshot& snapshot, const InterestMatching& matching);
 
   /// Writes creations, updates and deletions of the bodies that stay into `batch`; `full`: writes all projected auras,

@@ -43,9 +43,7 @@ class AForeignBody : public ::testing::Test {
   std::uint64_t next_id = 1;
 };
 
-TEST_F(AForeignBody, IsAsOldAsItsAura) {
-  EXPECT_EQ(receive(aura_at(Vec3::Zero())).path.age_steps, 3);
-}
+TEST_F(AForeignBody, IsAsOldAsItsAura) { EXPECT_EQ(receive(aura_at(Vec3::Zero())).path.age_steps, 3); }
 
 TEST_F(AForeignBody, AsleepIsAsOldAsTheLastWordOfItsSource) {
   AuraRecord sleeper = aura_at(Vec3::Zero());
