@@ -21,7 +21,6 @@ bool is_within(const Vec3& p, double radius_m, const Vec3& other, double other_r
 
 InterestMatching::InterestMatching(const Aura& aura, const Vicinity& vicinity, std::span<const TogetherPair> together)
     : aura_(aura),
-      has_narrow_regions_(vicinity.map.narrowest_m() < aura.listening_distance_m(0)),
       vicinity_(vicinity),
       together_(together),
       clusters_(aura),

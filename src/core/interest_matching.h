@@ -42,9 +42,7 @@ class InterestMatching {
   std::span<const std::uint32_t> near_others() const { return near_others_; }
 
   /// The regions that have to know of body i, because it is near their territory or near a body that they host.
-  Audience audience(std::uint32_t i) const {
-    return has_narrow_regions_ && audiences_[i] != kNobodyListens ? kAllListeners : audiences_[i];
-  }
+  Audience audience(std::uint32_t i) const { return audiences_[i]; }
   /// No part of the body's bounding sphere is over its host's region (kNone: its centre is not).
   bool outside(std::uint32_t i) const;
   /// An aura from elsewhere has met the cluster of body i.
@@ -111,10 +109,6 @@ class InterestMatching {
   double band(double speed_m_s, int hops) const;
 
   const Aura& aura_;
-  /// Some regions are narrower than an aura reaches. Bodies then matter to several regions at once, and pulls chain
-  /// through them. Auras to all listeners save redos there: 225 instead of 1,100 in one random world of nine small
-  /// regions.
-  const bool has_narrow_regions_;
   const Vicinity& vicinity_;
   std::span<const TogetherPair> together_;
   std::vector<Contact> joined_;           ///< our pairs that a redo holds together
