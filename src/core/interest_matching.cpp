@@ -20,11 +20,7 @@ bool is_within(const Vec3& p, double radius_m, const Vec3& other, double other_r
 }  // namespace
 
 InterestMatching::InterestMatching(const Aura& aura, const Vicinity& vicinity, std::span<const TogetherPair> together)
-    : aura_(aura),
-      vicinity_(vicinity),
-      together_(together),
-      clusters_(aura),
-      own_(aura, vicinity) {}
+    : aura_(aura), vicinity_(vicinity), together_(together), clusters_(aura), own_(aura, vicinity) {}
 
 void InterestMatching::look(const Snapshot& snapshot, std::span<const Neighbour> neighbours,
                             std::span<const AuraRecord> ghosts) {

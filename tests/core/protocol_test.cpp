@@ -232,6 +232,35 @@ TEST_F(ProtocolTest, TheDeadPullNobody) {
   EXPECT_THAT(observe(), IsEmpty());
 }
 
+/// A live node may still announce a body that it has sent to the dead one.
+TEST_F(ProtocolTest, TheDeadPullNobodyByAGhost) {
+  host(1, Vec3(0, 0, 0));
+  start(1, RegionMap::columns(3, 10));
+  AuraBatch b = batch(2, 0);
+  b.updates = {foreign(9, Vec3(0, 0.9, 0), 0, 0)};
+  b.updates[0].flags = kAuraGhost;
+  receive(b);
+  inbox.peers.push_back({region(0), PeerChange::kLost});
+  protocol->accept(inbox);
+  receive_next();
+  EXPECT_THAT(observe(), IsEmpty());
+}
+
+TEST_F(ProtocolTest, ABatchIsFullWhenARegionListensAnew) {
+  settings.neighbour_distance_m = 1;
+  start(0, RegionMap::columns(3, 10));
+  AuraBatch b = batch(1, 0);
+  b.introductions = {{region(0), region(2)}};
+  receive(b);
+  const Step since = horizon::introduction(settings.aura.lookahead);
+  while (now < since) {
+    receive_next();
+    observe();
+    EXPECT_EQ(protocol->outbox().aura.full, now == since) << now;
+  }
+  EXPECT_EQ(protocol->outbox().listeners.size(), 2U);
+}
+
 TEST_F(ProtocolTest, AnUnacknowledgedHandOffIsSentAgain) {
   settings.resend_after_steps = 7;
   host(1, Vec3(5, 0, 0));
