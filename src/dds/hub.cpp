@@ -1,6 +1,7 @@
 #include "dds/hub.h"
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <set>
 #include <string>
@@ -11,6 +12,7 @@
 #include <fmt/format.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include "aurasim.h"
@@ -56,6 +58,33 @@ class Socket {
   int fd_;
 };
 
+std::string why_no_second(std::uint32_t domain) {
+  return fmt::format("DDS domain {} already has a hub, or another program has its UDP port {}", domain,
+                     hub_port(domain));
+}
+
+/// A name on this host that one process has at a time. Fast DDS shares its ports, so two hubs that start in the same
+/// moment would both find the port free. The kernel gives the name back when the process ends, however it ends.
+class Claim {
+ public:
+  explicit Claim(std::uint32_t domain) : fd_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+    ::sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    const std::string name = fmt::format("aurasim hub {}", domain);
+    name.copy(&address.sun_path[1], name.size());  // it begins with a zero byte: a name without a file
+    const auto size = static_cast<::socklen_t>(offsetof(::sockaddr_un, sun_path) + 1 + name.size());
+    if (fd_ >= 0 && ::bind(fd_, reinterpret_cast<const ::sockaddr*>(&address), size) == 0) return;  // NOLINT
+    if (fd_ >= 0) ::close(fd_);
+    throw DdsError(why_no_second(domain));
+  }
+  ~Claim() { ::close(fd_); }
+  Claim(const Claim&) = delete;
+  Claim& operator=(const Claim&) = delete;
+
+ private:
+  int fd_;
+};
+
 MeetingPoint point_of(const Settings& settings) {
   ::in_addr address{};
   ::inet_pton(AF_INET, settings.interfaces.empty() ? "127.0.0.1" : settings.interfaces.front().c_str(), &address);
@@ -65,8 +94,7 @@ MeetingPoint point_of(const Settings& settings) {
 /// The settings of a hub, with introductions. Throws if the domain has one.
 Settings checked(Settings settings) {
   if (Hub::is_there(settings)) {
-    throw DdsError(fmt::format("DDS domain {} already has a hub, or another program has its UDP port {}",
-                               settings.domain, hub_port(settings.domain)));
+    throw DdsError(why_no_second(settings.domain));
   }
   settings.introductions = std::make_shared<Introductions>();
   return settings;
@@ -105,7 +133,8 @@ struct Lane {
 
 struct Hub::Impl {
   /// `settings`: checked.
-  explicit Impl(const Settings& settings) : introductions(settings.introductions), participant(settings) {}
+  explicit Impl(const Settings& settings)
+      : claim(settings.domain), introductions(settings.introductions), participant(settings) {}
 
   void pass_on(Lane& lane);
   void pass_on_checkpoints(Lane& lane);
@@ -114,6 +143,7 @@ struct Hub::Impl {
     ++(lane.writer.pass_on(sample) == WriteResult::kFailed ? counts.failed : counts.passed);
   }
 
+  Claim claim;
   std::shared_ptr<Introductions> introductions;
   Socket socket;
   Participant participant;

@@ -102,8 +102,7 @@ command_line::ExitCode NodeProcess::run_steps() {
 }
 
 void NodeProcess::run_until_end() {
-  while (!finished() && !succession_.leaves_now()) {
-    succession_.leave_if_asked();
+  while (!is_over()) {
     executor_.execute_early_commands();
     executor_.execute_commands();
     run_.look_for_deaths();
@@ -118,6 +117,11 @@ void NodeProcess::run_until_end() {
     compute_step();
     run_.saving.plan_checkpoint(*run_.node);
   }
+}
+
+bool NodeProcess::is_over() {
+  succession_.leave_if_asked();
+  return finished() || succession_.leaves_now();
 }
 
 bool NodeProcess::finished() {

@@ -30,6 +30,7 @@ class NodeProcess {
   command_line::ExitCode not_begun();
   command_line::ExitCode run_steps();
   void run_until_end();
+  bool is_over();
   bool finished();
   bool wait_until_due();
   void wait_in_pause();

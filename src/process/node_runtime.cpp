@@ -161,7 +161,9 @@ std::optional<std::string> NodeRuntime::death() {
   const bool is_running = restoration.computes_in(generation) && node && life_of_node == life;
   std::vector<core::RegionId> silent;
   if (is_running) silent = node->protocol().intake().dead_regions();
-  return why_stand(control().statuses(), restoration.own_world(options.region, generation, std::move(silent)));
+  OwnWorld own = restoration.own_world(options.region, generation, std::move(silent));
+  if (is_running && launch.is_coupled() && !has_reached_the_end()) own.coupled_in = node->current_step();
+  return why_stand(control().statuses(), own);
 }
 
 void NodeRuntime::look_for_deaths() {

@@ -84,6 +84,10 @@ std::optional<std::string> why_stand(const SeenNodes& nodes, const OwnWorld& own
       const std::string& why = seen.status.text;
       return fmt::format("the node of region {} has given up{}{}", number, why.empty() ? "" : ": ", why);
     }
+    const bool is_missed = own.coupled_in && seen.status.step <= *own.coupled_in && !own.is_going_back;
+    if (is_missed && state == NodeState::kFinished && seen.status.generation == own.current) {
+      return fmt::format("the node of region {} has ended", number);
+    }
     // The node has left, and its successor waits. (After a recovery, statuses of nodes that have begun may come late.)
     if (!own.is_going_back && !seen.lost && state == NodeState::kSpare && !is_member()) {
       return fmt::format("the node of region {} has left", number);

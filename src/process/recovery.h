@@ -42,6 +42,8 @@ struct OwnWorld {
   std::vector<core::RegionId> silent;  ///< neighbours whose streams have ended, or have sent impossible messages
   const messages::RunCommand* restore = nullptr;  ///< the newest restore command that it has received; null: none
   bool is_going_back = false;                     ///< all have agreed on `restore`, and not all have begun
+  /// The present state, where regions are coupled and the run goes on: the next one cannot be computed without all.
+  std::optional<core::Step> coupled_in = {};
 };
 
 /// Reason why this node must not compute its next state: another node of its generation has died, has left, or waits

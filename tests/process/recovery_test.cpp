@@ -86,6 +86,18 @@ TEST_F(Standing, WhoHasGivenUpSaysWhyToThoseWhoStandForIt) {
   EXPECT_EQ(why_stand(nodes_, own), "the node of region 1 has given up");
 }
 
+TEST_F(Standing, ACoupledNodeStandsForOneThatHasEndedBefore) {
+  OwnWorld own;
+  own.region = RegionId{0};
+  hear(1, NodeState::kFinished);
+  nodes_[RegionId{1}].status.step = 121;
+  EXPECT_EQ(why_stand(nodes_, own), std::nullopt) << "with auras the others go on";
+  own.coupled_in = 120;
+  EXPECT_EQ(why_stand(nodes_, own), std::nullopt) << "its part of state 121 is on the way";
+  own.coupled_in = 121;
+  EXPECT_EQ(why_stand(nodes_, own), "the node of region 1 has ended");
+}
+
 /// Its host starts three processes for the region, one after the other. All of them die where the node has died.
 TEST_F(Standing, WhoHasStoodInThreeTimesInVainGivesUp) {
   for (const std::uint32_t region : {0U, 1U, 3U}) hear(region);

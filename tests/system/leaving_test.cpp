@@ -121,5 +121,13 @@ TEST_F(StartedByHand, WhenAllAreAskedToLeaveTheRunEnds) {
   expect_nobody_left(kGenerous);
 }
 
+/// Some have ended when others are in the middle of the next step.
+TEST_F(StartedByHand, WhenAllAreAskedToLeaveACoupledRunEndsToo) {
+  start_nodes(set({"exchange=coupled"}));
+  for (Process* node : nodes_) node->signal(SIGTERM);
+  for (Process* node : nodes_) expect_exit(*node, 0);
+  expect_nobody_left(kGenerous);
+}
+
 }  // namespace
 }  // namespace aurasim::system_test
