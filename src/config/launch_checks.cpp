@@ -145,8 +145,7 @@ void settle_auto(Launch& launch) {
   } else if (launch.regions.size() > kMostCoupledByAuto) {
     launch.exchange = Exchange::kAura;
     launch.why_exchange = fmt::format(
-        "there are {} regions, more than the {} that it couples, as coupled regions all "
-        "listen to each other",
+        "there are {} regions, more than the {} that it couples, as coupled regions all listen to each other",
         launch.regions.size(), kMostCoupledByAuto);
   }
 }

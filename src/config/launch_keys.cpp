@@ -303,8 +303,7 @@ const KeysOf<Launch>& launch_keys() {
               "how bodies of two regions touch. aura: one node gets both in time, which hides the latency between "
               "nodes; coupled: all their nodes solve the contact together, several messages a step, for nodes of "
               "one host or rack; auto: coupled where it is possible, regions are 16 or fewer and the nodes measure "
-              "short "
-              "round trips when they meet (exchange_limit), else aura"),
+              "short round trips when they meet (exchange_limit), else aura"),
           optional("exchange_limit", &Launch::exchange_limit_given_s, number(Range::from_to(1e-6, 10), "s"),
                    "longest round trip between nodes at which exchange: auto means coupled")
               .otherwise("half a step's time, divided by its exchanges: 2 time.substeps + 1"),

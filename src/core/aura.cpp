@@ -7,15 +7,7 @@
 namespace aurasim::core {
 
 Path path_of(const BodyState& body, Step now, const ClearanceQuery& clearance) {
-  Path path;
-  path.prototype = body.prototype;
-  path.radius_m = clearance.bounding_radius(body.prototype);
-  path.pose = body.pose;
-  path.v_WB = body.v_WB;
-  path.w_WB = body.w_WB;
-  path.moves = body.awake;
-  path.unborn_steps = static_cast<double>(std::max<Step>(0, body.birth - now));
-  return path;
+  return path_from(body, body.awake, now, clearance);
 }
 
 /// The reach from which all distances follow: the largest distance from which two bodies can come together. The range

@@ -3,6 +3,7 @@
 // class of its own (make_aura.h).
 #pragma once
 
+#include <algorithm>
 #include <optional>
 
 #include "core/body_state.h"
@@ -67,6 +68,19 @@ struct Path {
   double blur_m = 0;  ///< how far its surface may be from where the path has it, because its aura was sent rounded
 };
 
+/// The path from state `now` on of what `body`, a BodyState or an AuraRecord, describes.
+template <class Body>
+Path path_from(const Body& body, bool moves, Step now, const ClearanceQuery& clearance) {
+  Path path;
+  path.prototype = body.prototype;
+  path.radius_m = clearance.bounding_radius(body.prototype);
+  path.pose = body.pose;
+  path.v_WB = body.v_WB;
+  path.w_WB = body.w_WB;
+  path.moves = moves;
+  path.unborn_steps = static_cast<double>(std::max<Step>(0, body.birth - now));
+  return path;
+}
 /// The path of one of our own bodies from its state now.
 Path path_of(const BodyState& body, Step now, const ClearanceQuery& clearance);
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <algorithm>
-
 #include "core/aura.h"
 #include "core/aura_precision.h"
 #include "core/messages.h"
@@ -26,14 +24,7 @@ inline AuraRecord aura_record(const BodyState& body, RegionId host, Step stamp) 
 
 /// The path of the body of `aura` from the aura's own state on.
 inline Path path_of(const AuraRecord& aura, const ClearanceQuery& clearance) {
-  Path path;
-  path.prototype = aura.prototype;
-  path.radius_m = clearance.bounding_radius(aura.prototype);
-  path.pose = aura.pose;
-  path.v_WB = aura.v_WB;
-  path.w_WB = aura.w_WB;
-  path.moves = (aura.flags & kAuraAsleep) == 0;
-  path.unborn_steps = static_cast<double>(std::max<Step>(0, aura.birth - aura.stamp));
+  Path path = path_from(aura, (aura.flags & kAuraAsleep) == 0, aura.stamp, clearance);
   path.speed_m_s = aura.speed_m_s;
   path.blur_m = rounded_within_m(path.radius_m);
   return path;

@@ -24,22 +24,18 @@ double reach_m(const Aura& aura, const Path& path, double others_top_speed_m_s) 
          steps * rules.step_s * drift;
 }
 
-Rectangle hull(const Rectangle& a, const Rectangle& b) {
-  return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
-}
-
 /// Adds what a body of `host` at `p` may reach, if it may come to `territory`. One that is over it already may come to
 /// all of it, however slow it is: a blow that nobody expects may make it faster.
 void add_to(std::vector<HostsReach>& reaches, const Rectangle& territory, RegionId host, const Vec3& p,
             double reach_m) {
   if (territory.distance(p.x(), p.y()) > reach_m) return;
   Rectangle reach{p.x() - reach_m, p.y() - reach_m, p.x() + reach_m, p.y() + reach_m};
-  if (territory.contains(p.x(), p.y())) reach = hull(reach, territory);
+  if (territory.contains(p.x(), p.y())) reach = hull_of(reach, territory);
   const auto known = std::ranges::find(reaches, host, &HostsReach::host);
   if (known == reaches.end()) {
     reaches.push_back({host, reach});
   } else {
-    known->reach = hull(known->reach, reach);
+    known->reach = hull_of(known->reach, reach);
   }
 }
 

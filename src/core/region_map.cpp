@@ -21,9 +21,7 @@ std::string text(const Rectangle& r) {
 
 Rectangle hull_of(const std::vector<Rectangle>& boxes) {
   Rectangle hull = boxes.front();
-  for (const Rectangle& b : boxes) {
-    hull = {std::min(hull.x0, b.x0), std::min(hull.y0, b.y0), std::max(hull.x1, b.x1), std::max(hull.y1, b.y1)};
-  }
+  for (const Rectangle& box : boxes) hull = hull_of(hull, box);
   return hull;
 }
 

@@ -3,6 +3,7 @@
 // the higher side).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -27,6 +28,11 @@ struct Rectangle {
   /// Distance in the x-y plane between two rectangles; 0 when they touch or overlap. Metres.
   double distance(const Rectangle& other) const;
 };
+
+/// The smallest rectangle around both.
+inline Rectangle hull_of(const Rectangle& a, const Rectangle& b) {
+  return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
+}
 
 /// Thrown for a set of boxes that is no region map; `what()` names the boxes and the fault.
 class BadRegionMap : public std::invalid_argument {

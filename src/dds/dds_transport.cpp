@@ -133,21 +133,19 @@ DdsTransport::Impl::Impl(Participant& participant_in, const TransportSettings& s
       wakeup(participant.domain().wakeup()),
       links(participant.domain(), settings.region, settings.life, settings.neighbours) {
   if (!settings.coupled) return;
-  SeamSettings seam_settings{.region = settings.region,
-                             .region_count = settings.region_count,
-                             .near = settings.near,
-                             .map_version = settings.map_version,
-                             .life = settings.life,
-                             .is_lost = {},
-                             .why_stand = settings.why_stand,
-                             .is_node = {}};
-  seam_settings.is_lost = [this](RegionId region) { return is_lost(region); };
-  seam_settings.is_node = [this](RegionId region, const ProcessPrefix& process) {
+  const auto is_node = [this](RegionId region, const ProcessPrefix& process) {
     Link* const link = links.find(region);
     const auto node = link == nullptr ? std::nullopt : links.node_of(*link);
     return !node || *node == process;
   };
-  seams.emplace(participant, seam_settings);
+  seams.emplace(participant, SeamSettings{.region = settings.region,
+                                          .region_count = settings.region_count,
+                                          .near = settings.near,
+                                          .map_version = settings.map_version,
+                                          .life = settings.life,
+                                          .is_lost = [this](RegionId region) { return is_lost(region); },
+                                          .why_stand = settings.why_stand,
+                                          .is_node = is_node});
 }
 
 /// True if the process that was the region's node has gone or fallen silent.

@@ -187,14 +187,20 @@ WriteResult Writer::write_parts(void* message, std::uint32_t message_B) {
   return result;
 }
 
-WriteResult Writer::write_sample(void* sample) {
+/// Writes with `write`, which returns true if it could, a second time if need be.
+template <class Write>
+WriteResult Writer::write_in_two_tries(Write&& write) {
   WriteResult result = WriteResult::kSent;
-  if (writer_->write(sample, HANDLE_NIL) != ReturnCode_t::RETCODE_OK) {
+  if (!write()) {
     result = WriteResult::kSentAtSecondTry;
-    if (writer_->write(sample, HANDLE_NIL) != ReturnCode_t::RETCODE_OK) return WriteResult::kFailed;
+    if (!write()) return WriteResult::kFailed;
   }
   written_ns_.store(LivelinessAsserter::now_ns(), std::memory_order_relaxed);
   return result;
+}
+
+WriteResult Writer::write_sample(void* sample) {
+  return write_in_two_tries([&] { return writer_->write(sample, HANDLE_NIL) == ReturnCode_t::RETCODE_OK; });
 }
 
 WriteResult Writer::pass_on(const PassedSample& passed) {
@@ -203,13 +209,7 @@ WriteResult Writer::pass_on(const PassedSample& passed) {
   params.related_sample_identity().sequence_number(
       eprosima::fastrtps::rtps::SequenceNumber_t(static_cast<std::uint64_t>(passed.number)));
   params.source_timestamp().from_ns(passed.sent_ns);
-  WriteResult result = WriteResult::kSent;
-  if (!writer_->write(passed.sample.get(), params)) {
-    result = WriteResult::kSentAtSecondTry;
-    if (!writer_->write(passed.sample.get(), params)) return WriteResult::kFailed;
-  }
-  written_ns_.store(LivelinessAsserter::now_ns(), std::memory_order_relaxed);
-  return result;
+  return write_in_two_tries([&] { return writer_->write(passed.sample.get(), params); });
 }
 
 void Writer::forget_all() {

@@ -78,6 +78,8 @@ class Writer {
 
  private:
   void say_who_does_not_read();
+  template <class Write>
+  WriteResult write_in_two_tries(Write&& write);
   WriteResult write_sample(void* sample);
   WriteResult write_parts(void* message, std::uint32_t message_B);
   std::uint32_t largest_sample_B() const;

@@ -1,6 +1,6 @@
-// Whom the hub of a run introduces to whom (dds.discovery: neighbours). Participants announce themselves to the hub
-// only. Two of them meet when one has a writer that the other one has a matching reader for: the hub passes the
-// announcement of each on to the other, and the two do the rest by themselves.
+// The hub of a run decides here whom it introduces to whom (dds.discovery: neighbours). Participants announce
+// themselves to the hub only. Two of them meet when one has a writer that the other one has a matching reader for: the
+// hub passes the announcement of each on to the other, and the two do the rest by themselves.
 #pragma once
 
 #include <array>

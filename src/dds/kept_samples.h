@@ -1,5 +1,5 @@
-// What the hub of a run keeps of one topic for processes that come later, as the writers of the samples do themselves
-// in a run without hub.
+// Samples of one topic that the hub of a run keeps for processes that come later, as the writers of the samples do
+// themselves in a run without hub.
 #pragma once
 
 #include <array>

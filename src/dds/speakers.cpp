@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "rtps/datagram_guard.h"
+#include "topics/topics.h"
 
 namespace aurasim::dds {
 namespace {
@@ -20,12 +21,12 @@ constexpr std::size_t kMostProcesses = 4096;
 constexpr std::size_t kMostWords = 64;
 constexpr std::size_t kMostFormer = 64;
 
-constexpr std::string_view kRegionPartition = "region/", kHubPartition = "hub/";
+constexpr std::string_view kRegionPartition = "region/";
 
 /// Region of a partition's name: 3 for "region/3", "region/3/to/1" and "hub/region/3" (what goes by a hub is of that
 /// region, too); -1 for anything else, wild cards included.
 std::int64_t region_of_partition(std::string_view partition) {
-  if (partition.starts_with(kHubPartition)) partition.remove_prefix(kHubPartition.size());
+  if (partition.starts_with(topics::kToHub)) partition.remove_prefix(topics::kToHub.size());
   if (!partition.starts_with(kRegionPartition)) return -1;
   partition.remove_prefix(kRegionPartition.size());
   std::uint32_t region = 0;

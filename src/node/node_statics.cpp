@@ -43,7 +43,7 @@ core::Heard Node::hear_of_statics(const core::Setpoints& setpoints, core::Heard 
     if (leads()) {
       heard = std::max(heard, order_move(wanted, setpoints.at_step, request, at_once));
     } else if (at_once && heard == core::Heard::kInTime) {
-      // What the lead refuses as too much in one state is not expected either, where nothing is computed again.
+      // The lead refuses what is too much in one state. Where nothing is computed again, this node must not expect it.
       if (!protocol_->computes_again() && !statics_.may_order(current_step())) return core::Heard::kRefused;
       expect(wanted, setpoints.at_step, request);
     }

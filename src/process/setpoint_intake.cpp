@@ -14,16 +14,16 @@ constexpr std::size_t kMostKept = 4096;
 
 void SetpointIntake::take(std::span<const core::Setpoints> received, std::uint64_t endpoints_refused, core::Step step,
                           std::optional<core::Step> holds_at, const Give& give) {
-  std::vector<core::Setpoints> due = std::exchange(kept_, {});
-  due.insert(due.end(), received.begin(), received.end());
-  for (core::Setpoints& setpoints : due) {
+  const auto take_one = [&](const core::Setpoints& setpoints) {
     const bool waits = holds_at && !setpoints.statics.empty() && setpoints.at_step > *holds_at;
     if (waits && kept_.size() < kMostKept) {
-      kept_.push_back(std::move(setpoints));
+      kept_.push_back(setpoints);
     } else {
       give_to_node(setpoints, step, give);
     }
-  }
+  };
+  for (const core::Setpoints& setpoints : std::exchange(kept_, {})) take_one(setpoints);
+  for (const core::Setpoints& setpoints : received) take_one(setpoints);
   counts_.refused = endpoints_refused + not_taken_ + unbearable_;
   if (counts_.refused > 0 && !std::exchange(refused_logged_, true)) {
     spdlog::warn(

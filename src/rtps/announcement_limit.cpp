@@ -1,7 +1,7 @@
 #include "rtps/announcement_limit.h"
 
 #include "rtps/datagram_findings.h"
-#include "rtps/only_submessage.h"
+#include "rtps/submessages.h"
 
 namespace aurasim::rtps {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "rtps/only_submessage.h"
+#include "rtps/submessages.h"
 
 namespace aurasim::rtps {
 

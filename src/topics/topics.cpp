@@ -111,7 +111,7 @@ bool goes_by_hub(TopicId topic, std::string_view partition) {
   }
 }
 
-std::string to_hub(std::string_view partition) { return "hub/" + std::string(partition); }
+std::string to_hub(std::string_view partition) { return std::string(kToHub).append(partition); }
 
 std::vector<std::string> partitions_in_run(TopicId topic, std::size_t regions) {
   const Division division = at(topic).division;
