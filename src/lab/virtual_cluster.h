@@ -89,7 +89,7 @@ class VirtualCluster {
   /// The end of a region's process. The other nodes hear of it `lease_s` later.
   void crash(core::RegionId region, double lease_s);
   /// The end of a region's process in the middle of the next state, when it has posted so many parcels, or right after
-  /// that state if it posts fewer. No node has this state then. For coupled regions.
+  /// that state if it posts fewer. The others have this state if all parcels for it have come. For coupled regions.
   void crash_in_step(core::RegionId region, std::size_t parcels);
   /// Stops a node, which then computes no state. What it has sent still arrives.
   void stop(core::RegionId region) { member(region).is_alive = false; }

@@ -88,6 +88,8 @@ class Node {
   std::span<const StepReport> finish(core::Step last);
   /// True once finish() has taken in the bodies that were under way.
   bool settled() const { return settled_; }
+  /// The bodies of this region for the records of its end.
+  BodiesAtEnd bodies_at_end();
   /// To be called when a node of the run has died. From then on no state is computed again, and late and missed
   /// collisions are counted as in a run without redo.
   void give_up_redo() { protocol_->give_up_alarms(); }

@@ -82,6 +82,24 @@ void Node::note_moved() {
   }
 }
 
+/// Where a coupled step has not ended, the snapshot is that of the state before it. Bodies that changed hosts in this
+/// step are with the old or the new one, depending on which of the two has ended it.
+BodiesAtEnd Node::bodies_at_end() {
+  BodiesAtEnd end;
+  end.here = world_.snapshot().bodies;
+  const auto add = [&end](const core::BodyRecord& body) { end.under_way.push_back(core::state_of(body)); };
+  if (!settled_) {
+    for (const core::HandOff& h : protocol_->departures().open()) std::ranges::for_each(h.cluster.bodies, add);
+  }
+  if (!is_broken_) return end;
+  for (const physics::Moved& moved : world_.left()) {
+    add(moved.body);
+    std::erase_if(end.here, [&](const core::BodyState& body) { return body.id == moved.body.id; });
+  }
+  for (const physics::Moved& moved : world_.arrived()) add(moved.body);
+  return end;
+}
+
 void Node::count(const core::Snapshot& snapshot) {
   report_.step = snapshot.step;
   report_.bodies = snapshot.born;

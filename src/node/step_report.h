@@ -35,6 +35,12 @@ struct Birth {
   core::Step birth = 0;
 };
 
+/// The bodies of a region when its run ends.
+struct BodiesAtEnd {
+  std::vector<core::BodyState> here;       ///< hosted in the last whole state
+  std::vector<core::BodyState> under_way;  ///< between two hosts: the other one may have them, too
+};
+
 struct HashPart {
   core::Step step = 0;
   std::uint64_t sum = 0;

@@ -125,10 +125,8 @@ bool NodeProcess::is_over() {
 }
 
 bool NodeProcess::finished() {
-  if (run_.leaving.has_begun() && (!succession_.can_leave_to_others() || run_.leaving.is_overdue(Clock::now())))
-    return true;
-  return host::stop_requested() || run_.restoration.stop_asked() || run_.has_reached_the_end() || run_.fence.closed() ||
-         run_.restoration.is_broken_off();
+  return succession_.leaves_in_vain() || host::stop_requested() || run_.restoration.stop_asked() ||
+         run_.has_reached_the_end() || run_.fence.closed() || run_.restoration.is_broken_off();
 }
 
 /// True when the next state is due, allowed and everything it needs is here. Returns often, so that commands are

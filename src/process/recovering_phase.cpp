@@ -60,7 +60,7 @@ bool RecoveringPhase::agree_on_restore() {
     if (run_.restoration.is_broken_off()) return false;
     if (host::stop_requested() || run_.restoration.is_stopped(Clock::now())) return false;
     succession_.leave_if_asked();
-    if (run_.leaving.is_overdue(Clock::now())) return false;
+    if (succession_.leaves_in_vain()) return false;
     if (run_.node) run_.node->ready();
     const bool may_go_on = !run_.node || run_.fence_is_open();
     if (run_.fence.closed()) return false;

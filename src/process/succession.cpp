@@ -50,6 +50,10 @@ bool Succession::can_leave_to_others() {
   return run_.recovers() && run_.leaving.can_leave_to_others(run_.control().statuses());
 }
 
+bool Succession::leaves_in_vain() {
+  return run_.leaving.has_begun() && (!can_leave_to_others() || run_.leaving.is_overdue(Clock::now()));
+}
+
 bool Succession::leaves_now() {
   if (!run_.leaving.drains()) return false;
   const std::vector<messages::KeptPart> parts = run_.checkpoints().parts();

@@ -22,6 +22,8 @@ class Succession {
   void leave_if_asked();
   /// True if another node stays that can go on with this node's world.
   bool can_leave_to_others();
+  /// True if this process was asked to leave, and nobody takes its region over: nobody stays, or nobody has come.
+  bool leaves_in_vain();
   /// True if this node gives its region to another process and that costs the run least now.
   bool leaves_now();
   /// Leaves the region to a successor. To the others it is as a death.

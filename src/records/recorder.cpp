@@ -187,13 +187,9 @@ void Recorder::write_bodies(node::Node& node) {
     bodies.add(
         csv_line(BodyRow{region_, b.id, b.epoch, b.birth, where, p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()}));
   };
-  for (const core::BodyState& body : node.world().snapshot().bodies) row(body, BodyRow::kHere);
-  const auto under_way = [&](const core::HandOff& h) {
-    for (const core::BodyRecord& body : h.cluster.bodies) row(core::state_of(body), BodyRow::kUnderWay);
-  };
-  if (!node.settled()) {
-    for (const core::HandOff& h : node.protocol().departures().open()) under_way(h);
-  }
+  const node::BodiesAtEnd end = node.bodies_at_end();
+  for (const core::BodyState& body : end.here) row(body, BodyRow::kHere);
+  for (const core::BodyState& body : end.under_way) row(body, BodyRow::kUnderWay);
   if (!bodies.flush()) end_records(bodies);
 }
 

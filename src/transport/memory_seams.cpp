@@ -61,7 +61,7 @@ std::vector<std::byte> MemorySeams::take(core::RegionId from, core::RegionId to)
   auto& waiting = parcels_[{from, to}];
   arrived_.wait(turn, [&] { return closed_ || !waiting.empty(); });
   turn.release();  // the turn is still this thread's
-  if (closed_) throw core::SeamsBroken("another region has ended in the middle of a step");
+  if (waiting.empty()) throw core::SeamsBroken("another region has ended in the middle of a step");
   std::vector<std::byte> parcel = std::move(waiting.front());
   waiting.pop_front();
   return parcel;
