@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 #include <stdexcept>
 #include <thread>
@@ -65,6 +66,17 @@ void look_at_keys(const config::Launch& launch) {
   }
 }
 
+/// Gives a run of many nodes on this host a hub, unless the launch file says how they find each other.
+config::Launch with_hub(config::Launch launch, command_line::FileArguments& files) {
+  const auto is_loopback = [](const std::string& address) { return address.starts_with("127."); };
+  if (launch.dds.discovery != config::Discovery::kAuto || launch.regions.size() <= config::kMostNodesWithoutHub ||
+      !launch.dds.security.empty() || !std::ranges::all_of(launch.dds.interfaces, is_loopback)) {
+    return launch;
+  }
+  files.overrides.emplace_back("dds.discovery=neighbours");
+  return config::read_launch(files.file, files.overrides);
+}
+
 /// Prepares the folders for saved worlds, and the world that the run goes on from.
 void prepare_saves(const config::Launch& launch, setup::LaunchOptions& options) {
   if (options.resume) {
@@ -79,7 +91,8 @@ int run_launch(LaunchArguments arguments) {
     spdlog::info("removed the keys of a launch that was killed: {}", folder.string());
   }
   std::unique_ptr<launch::ThrowAwayKeys> throw_away = keys_for(arguments);
-  const config::Launch launch = config::read_launch(arguments.options.files.file, arguments.options.files.overrides);
+  command_line::FileArguments& files = arguments.options.files;
+  const config::Launch launch = with_hub(config::read_launch(files.file, files.overrides), files);
   look_at_keys(launch);
   look_at_host(launch, arguments.options);
   prepare_saves(launch, arguments.options);

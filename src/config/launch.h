@@ -74,7 +74,7 @@ struct Impair {
 struct Dds {
   int domain = 0;
   std::filesystem::path profiles;  ///< absolute, once read
-  Discovery discovery = Discovery::kMulticast;
+  Discovery discovery = Discovery::kAuto;
   std::vector<std::string> interfaces = {"127.0.0.1"};
   std::vector<std::string> peers;  ///< for Discovery::kPeers and kServer: "address" or "address:port"
   std::filesystem::path security;  ///< folder with this process's keys, absolute once read; empty: an open run

@@ -159,13 +159,15 @@ const KeysOf<Dds>& dds_keys() {
               .otherwise("`../qos/aurasim.xml`, or where that is not, the one that comes with the program"),
           optional(
               "discovery", &Dds::discovery,
-              choice<Discovery>({{"multicast", Discovery::kMulticast},
+              choice<Discovery>({{"auto", Discovery::kAuto},
+                                 {"multicast", Discovery::kMulticast},
                                  {"peers", Discovery::kPeers},
                                  {"server", Discovery::kServer},
                                  {"neighbours", Discovery::kNeighbours}}),
               "multicast; peers: announcements go to the addresses in `peers`; server: Fast DDS discovery servers "
               "at `peers`; neighbours: a hub (`aurasim hub`; `launch` starts one) introduces the nodes that need each "
-              "other, for many nodes on one host"),
+              "other, for many nodes on one host; auto: multicast, but `launch` uses neighbours for more than 16 nodes "
+              "on loopback without keys"),
           optional("interfaces", &Dds::interfaces, list(1, 256, text("an address")),
                    "own addresses that may carry traffic; [\"*\"]: all of them. The default never leaves the machine"),
           optional("peers", &Dds::peers, list(1, 256, text("an address")),

@@ -87,6 +87,8 @@ Domain::Domain(const Settings& settings)
   has_keys_ = settings.keys.has_value();
   if (has_keys_) make_room_for_handshakes(qos);
   loopback_only_ = on_loopback_only(qos);
+  hears_hubs_ = speaks_by_hub_ ||
+                (settings.discovery == config::Discovery::kAuto && loopback_only_ && !settings.keys.has_value());
   believes_silence_ = settings.believes_silence || !loopback_only_;
   if (!believes_silence_) be_patient_with_this(qos);
   // A discovery server has to be asked again until it answers.
@@ -161,7 +163,7 @@ void Domain::on_participant_discovery(eprosima::fastdds::dds::DomainParticipant*
   const ProcessPrefix& process = info.info.m_guid.guidPrefix;
   const bool is_gone = info.status == Info::REMOVED_PARTICIPANT || info.status == Info::DROPPED_PARTICIPANT;
   const auto& data = info.info.m_userData;
-  if (speaks_by_hub_ && std::ranges::equal(data, kHubUserData)) {
+  if (hears_hubs_ && std::ranges::equal(data, kHubUserData)) {
     is_gone ? speakers_.remove_hub(process) : speakers_.add_hub(process);
     wakeup_.notify();
   }

@@ -100,6 +100,7 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   std::uint32_t datagram_B_ = 0;
   bool has_keys_ = false;
   bool speaks_by_hub_ = false;
+  bool hears_hubs_ = false;                       ///< what a hub passes on counts as its source's
   std::shared_ptr<Introductions> introductions_;  ///< only in a hub
   bool loopback_only_ = false;
   bool believes_silence_ = true;

@@ -311,7 +311,7 @@ bool Reader::take(void* sample, Origin* origin) {
   while (reader_->take_next_sample(sample, &info) == ReturnCode_t::RETCODE_OK) {
     if (!info.valid_data) continue;
     Guid writer = eprosima::fastrtps::rtps::iHandle2GUID(info.publication_handle);
-    const bool by_hub = domain_.speaks_by_hub() && domain_.speakers().is_hub(writer.guidPrefix);
+    const bool by_hub = domain_.speakers().is_hub(writer.guidPrefix);
     if (by_hub) {
       const auto& origin_of = info.related_sample_identity;
       writer = origin_of.writer_guid();

@@ -20,6 +20,7 @@ using eprosima::fastrtps::rtps::Locator_t;
 namespace {
 
 constexpr std::uint16_t kDiscoveryServerPort = 11811;
+constexpr const char* kMulticastGroup = "239.255.0.1";  ///< of RTPS, for announcements
 /// A part of a message has to fit into a datagram with all headers. On a link with smaller packets IP fragments.
 constexpr std::uint32_t kSmallestDatagram_B = 1200;
 
@@ -92,7 +93,8 @@ void set_peers(DomainParticipantQos& qos, const Settings& settings) {
   }
 }
 
-/// Makes the participant announce itself to the hub only; the hub itself listens where all look for it.
+/// Makes the participant announce itself to the hub only. The hub itself listens where all look for it, and to
+/// multicast, where it announces itself: so it meets tools and clients that know nothing of hubs.
 void set_hub(DomainParticipantQos& qos, const Settings& settings) {
   const std::string address = settings.interfaces.empty() ? "127.0.0.1" : settings.interfaces.front();
   const Locator_t hub = locator_of(address, hub_port(settings.domain));
@@ -102,7 +104,13 @@ void set_hub(DomainParticipantQos& qos, const Settings& settings) {
   builtin.metatrafficUnicastLocatorList.clear();
   builtin.initialPeersList.push_back(hub);
   builtin.metatrafficUnicastLocatorList.push_back(is_hub ? hub : locator_of(address, 0));
-  if (is_hub) qos.user_data().setValue({kHubUserData.begin(), kHubUserData.end()});
+  if (!is_hub) return;
+  qos.user_data().setValue({kHubUserData.begin(), kHubUserData.end()});
+  Locator_t everybody;
+  eprosima::fastrtps::rtps::IPLocator::createLocator(
+      LOCATOR_KIND_UDPv4, kMulticastGroup, qos.wire_protocol().port.getMulticastPort(settings.domain), everybody);
+  builtin.metatrafficMulticastLocatorList.push_back(everybody);
+  builtin.initialPeersList.push_back(everybody);
 }
 
 /// Sets discovery by `fast-discovery-server -i N`, where N is the position in the list. As a super client the

@@ -29,7 +29,7 @@ struct Settings {
   /// Addresses that may carry traffic. If not empty it replaces the white list of every transport of the profile; {"*"}
   /// removes the white list. Empty: the profile decides.
   std::vector<std::string> interfaces;
-  config::Discovery discovery = config::Discovery::kMulticast;
+  config::Discovery discovery = config::Discovery::kAuto;
   /// Set in the hub of Discovery::kNeighbours: who is to be introduced to whom.
   std::shared_ptr<Introductions> introductions;
   std::vector<std::string> peers;  ///< "address" or "address:port" (UDP); replaces the profile's initial peers

@@ -25,7 +25,7 @@ TEST(LaunchFile, EverythingButSceneAndRegionsHasADefault) {
   EXPECT_EQ(launch.physics.solver, "soft_step");
   EXPECT_EQ(launch.physics.iterations, 10);
   EXPECT_EQ(launch.dds.domain, 0);
-  EXPECT_EQ(launch.dds.discovery, Discovery::kMulticast);
+  EXPECT_EQ(launch.dds.discovery, Discovery::kAuto);
   EXPECT_THAT(launch.dds.interfaces, testing::ElementsAre("127.0.0.1"));
   EXPECT_TRUE(launch.dds.profiles.is_absolute());
   EXPECT_EQ(launch.observe.tick_hz, 20);

@@ -30,6 +30,10 @@ class Cyclone : public SystemTest {
 
 TEST_F(Cyclone, ReadsEveryRegionAndItsCommandsAreObeyed) { expect_reads_and_is_obeyed(kCycloneOnLoopback, {}); }
 
+TEST_F(Cyclone, MeetsTheNodesByMulticastWhereTheyHaveAHub) {
+  expect_reads_and_is_obeyed(kCycloneOnLoopback, set({"dds.discovery=neighbours"}), {"by_hub"});
+}
+
 TEST_F(Cyclone, MeetsTheNodesByTheHubOfTheRun) {
   const std::string hub = "127.0.0.1:" + std::to_string(7402 + 250 * test::own_domain());
   expect_reads_and_is_obeyed(

@@ -94,6 +94,30 @@ TEST_F(AHub, PassesCommandsOn) {
   expect_all_bodies_accounted_for(report_of("steered"));
 }
 
+/// Programs that announce themselves by multicast, as they do in other runs.
+TEST_F(AHub, BringsThoseWhoKnowNothingOfItToTheNodes) {
+  const Words before = Words{"echo", "node_status", launch_file("demo")} + in_own_domain();
+  Process& early = start(before);
+  Process& run = launch("met", launch_file("demo"), set({"dds.discovery=neighbours"}));
+  ASSERT_NO_FATAL_FAILURE(expect_reaches(report_of("met"), 4, 60));
+  EXPECT_TRUE(wait_until([&] { return !early.out().empty(); }, kGenerous)) << early.err();
+  Process& late = start(Words{"echo", "aura", launch_file("demo")} + in_own_domain());
+  EXPECT_TRUE(wait_until([&] { return !late.out().empty(); }, kGenerous)) << late.err();
+  Process& stop = start(Words{"send", "stop", launch_file("demo")} + in_own_domain());
+  expect_exit(stop, 0);
+  expect_exit(run, 0);
+  expect_all_bodies_accounted_for(report_of("met"));
+}
+
+TEST_F(AHub, IsThereByDefaultWhereThereAreManyNodes) {
+  Process& run = launch("many", launch_file("demo"),
+                        Words{"--steps", "20"} + set({"regions={layout: columns, count: 17, width: 6}"}));
+  EXPECT_TRUE(wait_until([&] { return hub_of(run) != 0 || run.wait(0ms); }, kGenerous));
+  EXPECT_NE(hub_of(run), 0);
+  expect_exit(run, 0);
+  expect_all_bodies_accounted_for(report_of("many"));
+}
+
 TEST_F(AHub, IsAloneInItsDomain) {
   const Words words = Words{"hub", launch_file("demo")} + set({"dds.discovery=neighbours"}) + in_own_domain();
   Process& one = start(words);
