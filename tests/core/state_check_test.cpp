@@ -3,11 +3,13 @@
 
 #include <memory>
 #include <optional>
+#include <random>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/aura_precision.h"
 #include "core/interest_matching.h"
 #include "core/letters.h"
 #include "core/make_aura.h"
@@ -101,6 +103,24 @@ TEST_F(TheCheck, FindsATouchInTheStateAfterTheOneInWhichTheyAreThatNear) {
   EXPECT_EQ(found[0].a, BodyId{1});
   EXPECT_EQ(found[0].b, BodyId{2});
   EXPECT_EQ(found[0].step, 1);
+}
+
+/// Two that just touch, one of which is where its aura says only to within rounding.
+TEST_F(TheCheck, FindsATouchWithABodyWhosePlaceTravelsRounded) {
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> any;
+  for (int i = 0; i < 100; ++i) {
+    const Vec3 way = Vec3(any(random), any(random), any(random)).normalized();
+    const Vec3 place = ours_at_ + (1 + aura_->rules().contact_margin_m - 1e-6) * way;
+    const Vec3 rounded = (place / kPositionGrain_m).array().round() * kPositionGrain_m;
+    neighbours_ = {Neighbour(region(1), region(0))};
+    check_.emplace(*aura_, vicinity_, 0);
+    publish(0, {body(2, 0, rounded)});
+    look(0);
+    look(1);
+    publish(1, {body(2, 1, rounded)});
+    EXPECT_THAT(look(2), SizeIs(1)) << "at " << place.transpose();
+  }
 }
 
 TEST_F(TheCheck, FindsATouchWithABodyOfOursThatWasNotAnnounced) {
