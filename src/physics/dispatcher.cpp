@@ -1,7 +1,7 @@
 #include "physics/dispatcher.h"
 
 #include <algorithm>
-#include <cassert>
+#include <new>
 
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
@@ -10,7 +10,6 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 #include <LinearMath/btAabbUtil2.h>
-#include <LinearMath/btPoolAllocator.h>
 
 #include "physics/corrected_result.h"
 #include "physics/inner_edges.h"
@@ -19,7 +18,10 @@
 namespace aurasim::physics {
 namespace {
 
-constexpr std::size_t kAlignment = 16;  // as Bullet's own pools have it
+/// Lies before an algorithm in memory. Bullet does not tell the size of an algorithm that it frees.
+struct alignas(16) AlgorithmHead {  // aligned as in Bullet's own pools
+  std::size_t bytes;                ///< of head and algorithm
+};
 
 bool bounds_overlap(const btBroadphaseProxy& a, const btBroadphaseProxy& b) {
   return TestAabbAgainstAabb2(a.m_aabbMin, a.m_aabbMax, b.m_aabbMin, b.m_aabbMax);
@@ -58,8 +60,7 @@ Dispatcher::Dispatcher(btCollisionConfiguration& configuration, const InnerEdges
       inner_edges_(inner_edges),
       hull_contacts_(
           *configuration.getCollisionAlgorithmCreateFunc(CONVEX_HULL_SHAPE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE),
-          kContactMargin),
-      algorithm_bytes_(static_cast<std::size_t>(configuration.getCollisionAlgorithmPool()->getElementSize())) {
+          kContactMargin) {
   setNearCallback(near_callback);
   registerCollisionCreateFunc(
       COMPOUND_SHAPE_PROXYTYPE, COMPOUND_SHAPE_PROXYTYPE,
@@ -133,8 +134,7 @@ btPersistentManifold* Dispatcher::getNewManifold(const btCollisionObject* body0,
       std::min({threshold_of(*body0), threshold_of(*body1), static_cast<btScalar>(kContactMargin)});
   const btScalar processing = std::min(body0->getContactProcessingThreshold(), body1->getContactProcessingThreshold());
   const std::unique_lock<std::mutex> lock = hold_pools();
-  void* const memory = pools_.allocate(sizeof(btPersistentManifold), kAlignment);
-  auto* const manifold = new (memory) btPersistentManifold(body0, body1, 0, breaking, processing);
+  auto* const manifold = new (manifolds_.take()) btPersistentManifold(body0, body1, 0, breaking, processing);
   manifold->m_index1a = m_manifoldsPtr.size();
   m_manifoldsPtr.push_back(manifold);
   return manifold;
@@ -148,18 +148,20 @@ void Dispatcher::releaseManifold(btPersistentManifold* manifold) {
   m_manifoldsPtr[place]->m_index1a = place;
   m_manifoldsPtr.pop_back();
   manifold->~btPersistentManifold();
-  pools_.deallocate(manifold, sizeof(btPersistentManifold), kAlignment);
+  manifolds_.give_back(manifold);
 }
 
-void* Dispatcher::allocateCollisionAlgorithm([[maybe_unused]] int bytes) {
-  assert(static_cast<std::size_t>(bytes) <= algorithm_bytes_);
+void* Dispatcher::allocateCollisionAlgorithm(int bytes) {
+  const std::size_t with_head = sizeof(AlgorithmHead) + static_cast<std::size_t>(bytes);
   const std::unique_lock<std::mutex> lock = hold_pools();
-  return pools_.allocate(algorithm_bytes_, kAlignment);
+  auto* const head = new (algorithms_.allocate(with_head, alignof(AlgorithmHead))) AlgorithmHead{with_head};
+  return head + 1;
 }
 
 void Dispatcher::freeCollisionAlgorithm(void* memory) {
   const std::unique_lock<std::mutex> lock = hold_pools();
-  pools_.deallocate(memory, algorithm_bytes_, kAlignment);
+  AlgorithmHead* const head = static_cast<AlgorithmHead*>(memory) - 1;
+  algorithms_.deallocate(head, head->bytes, alignof(AlgorithmHead));
 }
 
 }  // namespace aurasim::physics

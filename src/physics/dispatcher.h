@@ -7,6 +7,7 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 
+#include "physics/block_pool.h"
 #include "physics/hull_contacts.h"
 #include "physics/primitive_contacts.h"
 
@@ -50,9 +51,9 @@ class Dispatcher : public btCollisionDispatcher {
   const InnerEdges& inner_edges_;
   HullContactsMaker hull_contacts_;
   PrimitiveContactsMaker primitive_contacts_{kContactMargin};
-  std::size_t algorithm_bytes_;  ///< of the largest of Bullet's algorithms
-  /// For manifolds and algorithms. Grows with the contacts: Bullet's own pools take 6 MB in a world without any.
-  std::pmr::unsynchronized_pool_resource pools_;
+  // Memory that grows with the contacts: Bullet's own pools take 6 MB in a world without any.
+  BlockPool manifolds_{sizeof(btPersistentManifold)};
+  std::pmr::unsynchronized_pool_resource algorithms_;
   std::mutex pools_mutex_;
 };
 
