@@ -15,7 +15,23 @@ void append(const ManifoldRecord& manifold, const ClusterState& from, ClusterSta
                    first + static_cast<std::ptrdiff_t>(manifold.point_count * kContactPointDoubles));
 }
 
+template <class T>
+void free_spare(std::vector<T>& list) {
+  constexpr std::size_t kFew = 1024;
+  if (list.capacity() > kFew + 4 * list.size()) list.shrink_to_fit();
+}
+
 }  // namespace
+
+void free_spare_memory(ChangedState& state) {
+  free_spare(state.replaced);
+  free_spare(state.parted);
+  free_spare(state.now.bodies);
+  free_spare(state.now.manifolds);
+  free_spare(state.now.points);
+  free_spare(state.now.joints);
+  free_spare(state.now.joint_values);
+}
 
 ClusterState whole(ChangedState state) {
   if (state.before == nullptr) return std::move(state.now);

@@ -20,6 +20,10 @@ struct ChangedState {
   ClusterState now;                            ///< what counts instead, and all joints
 };
 
+/// Frees memory of `state.now` that is much larger than what it holds. The memory may come from a state in which all
+/// bodies had changed.
+void free_spare_memory(ChangedState& state);
+
 /// The bodies of the state with all that physics remembers about them.
 ClusterState whole(ChangedState state);
 

@@ -16,6 +16,9 @@ void OwnBodies::measure(std::uint32_t i, const BodyState& body, Step now) {
 void OwnBodies::look(const Snapshot& snapshot) {
   goes_on_ = snapshot.goes_on_from(seen_);
   seen_ = snapshot.number;
+  if (used_room_.is_spare(goes_on_ ? snapshot.changed.size() : snapshot.bodies.size())) {
+    free_memory(changed_, ids_before_, paths_before_);
+  }
   changed_.clear();
   if (goes_on_) {
     paths_before_.clear();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/aura.h"
+#include "core/used_room.h"
 #include "core/vicinity.h"
 
 namespace aurasim::core {
@@ -49,6 +50,7 @@ class OwnBodies {
   const Aura& aura_;
   const Vicinity& vicinity_;
   std::uint64_t seen_ = 0;  ///< number of the last snapshot
+  UsedRoom used_room_;      ///< of changed_ and of what was before
   bool goes_on_ = false;
   std::vector<std::uint32_t> changed_;
   std::vector<BodyId> ids_, ids_before_;  ///< ascending

@@ -79,6 +79,14 @@ void StateCheck::take_own(const Snapshot& snapshot, const InterestMatching& matc
   } else {
     take_all(own, now);
   }
+  if (used_room_.is_spare(now.own.size() + now.others.size())) free_spare_memory();
+}
+
+/// Frees the memory that states with many changes have used. What the lists hold stays.
+void StateCheck::free_spare_memory() {
+  spare_ = {};
+  for (State& state : states_) state.own.shrink_to_fit(), state.others.shrink_to_fit();
+  free_memory(noted_before_, own_, others_, middles_);
 }
 
 void StateCheck::take_changes(const OwnBodies& own, State& now) {

@@ -15,6 +15,7 @@
 #include "core/neighbour.h"
 #include "core/redo.h"
 #include "core/step_motion.h"
+#include "core/used_room.h"
 #include "core/vicinity.h"
 
 namespace aurasim::core {
@@ -81,6 +82,7 @@ class StateCheck {
   void add(const AuraRecord& aura, Step step, std::uint32_t world);
   void check(Step step);
   void forget();
+  void free_spare_memory();
   template <class Visit>
   static void for_each_motion(const std::vector<Sighting>& bodies, const std::vector<Sighting>& same,
                               const std::vector<Sighting>& other, Visit&& visit);
@@ -101,6 +103,7 @@ class StateCheck {
   std::vector<Step> noted_;                     ///< by body of ours: the last state in which it has changed
   std::vector<Step> noted_before_;              ///< memory for the next noted_
   State spare_;                                 ///< memory for the next one of states_
+  UsedRoom used_room_;                          ///< of the lists of states_
   std::vector<Way> own_, others_;               ///< ways in the step that is being checked
   std::vector<Path> middles_;                   ///< middles of others_, indexed by near_
   NearIndex near_;

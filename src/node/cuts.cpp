@@ -32,6 +32,11 @@ void Cut::note_arrival(const core::Adoption& adoption) {
   if (adoption.stamp <= step) joining.push_back(adoption);
 }
 
+void Cuts::keep(Cut cut) {
+  core::free_spare_memory(cut.bodies);
+  cuts_.push_back(std::move(cut));
+}
+
 void Cuts::note_arrival(const core::Adoption& adoption) {
   for (Cut& cut : cuts_) cut.note_arrival(adoption);
 }

@@ -34,7 +34,7 @@ class Cuts {
   /// `lookahead`: K.
   explicit Cuts(int lookahead) : lookahead_(lookahead) {}
 
-  void keep(Cut cut) { cuts_.push_back(std::move(cut)); }
+  void keep(Cut cut);
   void clear();
   /// Memory of the bodies of a dropped cut, for the next one. Its contents mean nothing.
   core::ChangedState take_memory();

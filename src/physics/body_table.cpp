@@ -9,6 +9,9 @@
 namespace aurasim::physics {
 namespace {
 
+/// Room for so many bodies is never given back.
+constexpr std::size_t kFew = 1024;
+
 bool before(const HostedBody& a, const HostedBody& b) { return a.id < b.id; }
 
 }  // namespace
@@ -85,6 +88,7 @@ void BodyTable::erase(const std::vector<bool>& leaving) {
     if (!leaving[i]) bodies_[kept++] = std::move(bodies_[i]);
   }
   bodies_.resize(kept);
+  if (bodies_.capacity() > kFew + 2 * kept) bodies_.shrink_to_fit();  // as when the node of a region drops all others
   number_from(first_left);
 }
 

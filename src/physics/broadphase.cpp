@@ -132,6 +132,10 @@ void Broadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
     standing_.optimizeIncremental(static_cast<int>(now));
     statics_to_place_ -= now;
   }
+  if (used_room_.is_spare(moved_.size())) {
+    for (List& list : lists_) list = {};
+    moved_.shrink_to_fit();
+  }
   if (moved_.empty()) return;
   std::atomic<std::size_t> taken = 0;
   team_.side_by_side([&](const soft::Worker& worker) {
@@ -173,7 +177,7 @@ void Broadphase::look_in(const btDbvt& tree, List& list, Proxy& proxy) {
     }
     Proxy& other = *static_cast<Proxy*>(node->data);
     if (&other == &proxy || other.moved > proxy.moved) continue;  // the later one of two that have moved finds the pair
-    if (!pairs_.needsBroadphaseCollision(&proxy, &other) || pairs_.findPair(&proxy, &other) != nullptr) continue;
+    if (!pairs_.needsBroadphaseCollision(&proxy, &other) || pairs_.contains(proxy, other)) continue;
     list.found.push_back({&proxy, &other});
   }
 }

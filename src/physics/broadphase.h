@@ -11,6 +11,7 @@
 #include <BulletCollision/BroadphaseCollision/btBroadphaseInterface.h>
 #include <BulletCollision/BroadphaseCollision/btDbvt.h>
 
+#include "core/used_room.h"
 #include "physics/contact_pairs.h"
 #include "physics/soft/threads.h"
 
@@ -73,6 +74,7 @@ class Broadphase final : public btBroadphaseInterface {
   btDbvt moving_, standing_;
   std::vector<Proxy*> moved_;  ///< objects that have left their boxes; null: removed since
   std::vector<List> lists_;
+  core::UsedRoom used_room_;          ///< of moved_ and lists_
   std::size_t next_to_clean_ = 0;     ///< index of a pair
   std::size_t statics_to_place_ = 0;  ///< leaves of standing_ that may have a better place in the tree
 };

@@ -49,6 +49,12 @@ class ChangedBodies {
     all_ = false;
   }
 
+  /// Frees the memory that many noted bodies have used.
+  void free_spare_memory() {
+    merged_ = {};
+    ids_.shrink_to_fit();
+  }
+
   /// Calls `visit(body, place)` once for each noted body that is in the table, in ascending order.
   template <class Visit>
   void for_each(BodyTable& table, Visit&& visit) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <tuple>
 #include <type_traits>
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
@@ -12,7 +11,6 @@
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
 #include "physics/bullet_convert.h"
-#include "physics/prefetch.h"
 
 namespace aurasim::physics {
 namespace {
@@ -96,30 +94,16 @@ Parts parts_of(const double* row, bool compound0, bool compound1) {
   return {compound0 ? static_cast<int>(row[kIndexInA]) : -1, compound1 ? static_cast<int>(row[kIndexInB]) : -1};
 }
 
-void write_manifolds(std::vector<KeyedManifold>& manifolds, core::ClusterState& cluster) {
-  std::sort(manifolds.begin(), manifolds.end(), [](const KeyedManifold& a, const KeyedManifold& b) {
-    if (std::tie(a.object0, a.object1) != std::tie(b.object0, b.object1)) {
-      return std::tie(a.object0, a.object1) < std::tie(b.object0, b.object1);
-    }
-    return parts_of(*a.manifold) < parts_of(*b.manifold);
+btPersistentManifold* restore_points(std::span<const PartManifold> made, const btCollisionObject& body0, Parts parts,
+                                     std::span<const double> rows) {
+  const auto wanted = std::ranges::find_if(made, [&](const PartManifold& candidate) {
+    return candidate.manifold->getBody0() == &body0 && candidate.parts == parts;
   });
-  cluster.manifolds.clear();
-  std::size_t points = 0;
-  for (const auto& [object0, object1, manifold] : manifolds) {
-    const auto point_count = static_cast<std::size_t>(manifold->getNumContacts());
-    cluster.manifolds.push_back(
-        {object0, object1, static_cast<std::uint32_t>(points), static_cast<std::uint32_t>(point_count)});
-    points += point_count;
+  if (wanted == made.end()) return nullptr;
+  for (std::size_t at = 0; at < rows.size(); at += core::kContactPointDoubles) {
+    wanted->manifold->addManifoldPoint(read_point(&rows[at]));
   }
-  cluster.points.resize(points * core::kContactPointDoubles);
-  double* row = cluster.points.data();
-  for (std::size_t i = 0; i < manifolds.size(); ++i) {
-    if (i + kPrefetchDistance < manifolds.size()) prefetch_points(*manifolds[i + kPrefetchDistance].manifold);
-    const btPersistentManifold& manifold = *manifolds[i].manifold;
-    for (int point = 0; point < manifold.getNumContacts(); ++point, row += core::kContactPointDoubles) {
-      write_point(manifold.getContactPoint(point), row);
-    }
-  }
+  return wanted->manifold;
 }
 
 void collect_manifolds(const btBroadphasePair& pair, std::vector<PartManifold>& result) {

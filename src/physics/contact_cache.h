@@ -18,13 +18,15 @@
 //   27     age in substeps
 #pragma once
 
-#include <compare>
+#include <span>
 #include <vector>
 
 #include <BulletCollision/NarrowPhaseCollision/btManifoldPoint.h>
 
 #include "core/body_state.h"
+#include "physics/parts.h"
 
+class btCollisionObject;
 class btPersistentManifold;
 struct btBroadphasePair;
 
@@ -37,14 +39,6 @@ inline constexpr std::size_t kLocalPointB = 3;
 /// `row` has core::kContactPointDoubles numbers.
 void write_point(const btManifoldPoint& point, double* row);
 btManifoldPoint read_point(const double* row);
-
-/// The children of two compounds that a manifold is between; -1 where a body is no compound.
-struct Parts {
-  int part0 = -1;
-  int part1 = -1;
-
-  auto operator<=>(const Parts&) const = default;
-};
 
 /// The parts of a manifold with at least one point.
 Parts parts_of(const btPersistentManifold& manifold);
@@ -60,15 +54,9 @@ struct PartManifold {
 /// for each pair of children whose bounds overlap.
 void collect_manifolds(const btBroadphasePair& pair, std::vector<PartManifold>& result);
 
-/// A manifold of at least one point, and its two objects.
-struct KeyedManifold {
-  core::ObjectRef object0 = 0;
-  core::ObjectRef object1 = 0;
-  const btPersistentManifold* manifold = nullptr;
-};
-
-/// Sets the records of the cluster to those of the manifolds, in the order of objects and parts. Sorts `manifolds`, and
-/// reuses the memory of the cluster.
-void write_manifolds(std::vector<KeyedManifold>& manifolds, core::ClusterState& cluster);
+/// Adds points to the manifold of these parts with this first body; there need not be one. `rows`: as many as points.
+/// Returns the manifold, or null.
+btPersistentManifold* restore_points(std::span<const PartManifold> made, const btCollisionObject& body0, Parts parts,
+                                     std::span<const double> rows);
 
 }  // namespace aurasim::physics

@@ -28,7 +28,10 @@ void ContactPairs::processAllOverlappingPairs(btOverlapCallback* callback, btDis
 }
 
 void ContactPairs::remove_pairs_of(std::span<btBroadphaseProxy* const> leaving, btDispatcher& dispatcher) {
-  for (btBroadphaseProxy* proxy : leaving) proxy->m_collisionFilterMask = kLeaving;
+  for (btBroadphaseProxy* proxy : leaving) {
+    proxy->m_collisionFilterMask = kLeaving;
+    sleeping_.remove_all_of(*proxy);
+  }
   btBroadphasePairArray& pairs = getOverlappingPairArray();
   for (int i = 0; i < pairs.size();) {
     if (is_leaving(*pairs[i].m_pProxy0) || is_leaving(*pairs[i].m_pProxy1)) {
@@ -36,6 +39,23 @@ void ContactPairs::remove_pairs_of(std::span<btBroadphaseProxy* const> leaving, 
     } else {
       ++i;
     }
+  }
+}
+
+/// Bullet's lists only grow, so the pairs are put into new ones.
+void ContactPairs::free_spare_memory() {
+  constexpr int kFew = 1024, kOneIn = 8;
+  btBroadphasePairArray& pairs = getOverlappingPairArray();
+  if (pairs.capacity() <= kFew || pairs.capacity() < kOneIn * pairs.size()) return;
+  btBroadphasePairArray kept;
+  kept.copyFromArray(pairs);
+  pairs.clear(), m_hashTable.clear(), m_next.clear();
+  pairs.reserve(kFew / 2);
+  m_hashTable.resize(kFew / 2, BT_NULL_PAIR), m_next.resize(kFew / 2, BT_NULL_PAIR);
+  for (int i = 0; i < kept.size(); ++i) {
+    btBroadphasePair* const pair = addOverlappingPair(kept[i].m_pProxy0, kept[i].m_pProxy1);
+    pair->m_algorithm = kept[i].m_algorithm;
+    pair->m_internalInfo1 = kept[i].m_internalInfo1;
   }
 }
 

@@ -6,6 +6,8 @@
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 
+#include "physics/sleeping_pairs.h"
+
 namespace aurasim::physics {
 
 /// Bullet's cache walks over all pairs twice for each body that leaves. Here a whole cluster leaves in one walk.
@@ -13,6 +15,16 @@ class ContactPairs : public btHashedOverlappingPairCache {
  public:
   /// Removes all pairs of these bodies with their contacts. The caller must then remove the bodies from the broadphase.
   void remove_pairs_of(std::span<btBroadphaseProxy* const> leaving, btDispatcher& dispatcher);
+
+  /// Pairs that are near, too, and that nothing is to be done about. Whoever adds a pair has to look there first.
+  SleepingPairs& sleeping() { return sleeping_; }
+  const SleepingPairs& sleeping() const { return sleeping_; }
+  /// Is the pair known, here or among the sleeping ones? Several threads may ask.
+  bool contains(btBroadphaseProxy& a, btBroadphaseProxy& b) {
+    return findPair(&a, &b) != nullptr || sleeping_.contains(a, b);
+  }
+  /// Frees the memory of pairs that are no longer here, if it is most of it.
+  void free_spare_memory();
 
   using btHashedOverlappingPairCache::processAllOverlappingPairs;
   void processAllOverlappingPairs(btOverlapCallback* callback, btDispatcher* dispatcher,
@@ -22,6 +34,7 @@ class ContactPairs : public btHashedOverlappingPairCache {
   void removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
 
  private:
+  SleepingPairs sleeping_;
   btManifoldArray manifolds_;  ///< scratch: manifolds of a pair that is prefetched
 };
 

@@ -19,8 +19,8 @@ namespace aurasim::physics {
 namespace {
 
 /// Lies before an algorithm in memory. Bullet does not tell the size of an algorithm that it frees.
-struct alignas(16) AlgorithmHead {  // aligned as in Bullet's own pools
-  std::size_t bytes;                ///< of head and algorithm
+struct alignas(BlockPool::kAlignment) AlgorithmHead {
+  BlockPool* pool;  ///< null: too large for any
 };
 
 bool bounds_overlap(const btBroadphaseProxy& a, const btBroadphaseProxy& b) {
@@ -154,14 +154,21 @@ void Dispatcher::releaseManifold(btPersistentManifold* manifold) {
 void* Dispatcher::allocateCollisionAlgorithm(int bytes) {
   const std::size_t with_head = sizeof(AlgorithmHead) + static_cast<std::size_t>(bytes);
   const std::unique_lock<std::mutex> lock = hold_pools();
-  auto* const head = new (algorithms_.allocate(with_head, alignof(AlgorithmHead))) AlgorithmHead{with_head};
+  const auto pool = std::ranges::find_if(algorithms_, [&](const BlockPool& of) { return of.bytes() >= with_head; });
+  AlgorithmHead* head = nullptr;
+  if (pool == algorithms_.end()) {
+    head = new (::operator new(with_head)) AlgorithmHead{nullptr};
+  } else {
+    head = new (pool->take()) AlgorithmHead{&*pool};
+  }
   return head + 1;
 }
 
 void Dispatcher::freeCollisionAlgorithm(void* memory) {
   const std::unique_lock<std::mutex> lock = hold_pools();
   AlgorithmHead* const head = static_cast<AlgorithmHead*>(memory) - 1;
-  algorithms_.deallocate(head, head->bytes, alignof(AlgorithmHead));
+  if (head->pool != nullptr) return head->pool->give_back(head);
+  ::operator delete(head);
 }
 
 }  // namespace aurasim::physics

@@ -2,7 +2,7 @@
 // contact cache, not on how long the pair has been known to this world.
 #pragma once
 
-#include <memory_resource>
+#include <array>
 #include <mutex>
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
@@ -53,7 +53,7 @@ class Dispatcher : public btCollisionDispatcher {
   PrimitiveContactsMaker primitive_contacts_{kContactMargin};
   // Memory that grows with the contacts: Bullet's own pools take 6 MB in a world without any.
   BlockPool manifolds_{sizeof(btPersistentManifold)};
-  std::pmr::unsynchronized_pool_resource algorithms_;
+  std::array<BlockPool, 4> algorithms_{BlockPool(64), BlockPool(128), BlockPool(256), BlockPool(1024)};
   std::mutex pools_mutex_;
 };
 

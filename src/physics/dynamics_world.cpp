@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <span>
 
-#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 #include <BulletDynamics/ConstraintSolver/btConstraintSolver.h>
@@ -16,6 +15,7 @@
 #include "physics/contact_pairs.h"
 #include "physics/dispatcher.h"
 #include "physics/inner_edges.h"
+#include "physics/made_manifolds.h"
 #include "physics/moving_body.h"
 #include "physics/moving_static.h"
 #include "physics/prefetch.h"
@@ -29,35 +29,6 @@ namespace {
 
 /// Collision group of guests. They touch only bodies that this world hosts.
 constexpr int kGuests = 1 << 6;
-
-/// Keeps a body awake during its own lifetime, because Bullet skips pairs of sleepers.
-class Awake {
- public:
-  explicit Awake(btCollisionObject& body) : body_(body), state_(body.getActivationState()) {
-    body_.forceActivationState(ACTIVE_TAG);
-  }
-  ~Awake() { body_.forceActivationState(state_); }
-  Awake(const Awake&) = delete;
-  Awake& operator=(const Awake&) = delete;
-
- private:
-  btCollisionObject& body_;
-  int state_;
-};
-
-/// Gives a new pair the algorithm that computes its contacts. For boxes and spheres the algorithm has a manifold from
-/// the beginning.
-void make_algorithm(btBroadphasePair& pair, btDispatcher& dispatcher) {
-  auto& object0 = *static_cast<btCollisionObject*>(pair.m_pProxy0->m_clientObject);
-  auto& object1 = *static_cast<btCollisionObject*>(pair.m_pProxy1->m_clientObject);
-  if (!dispatcher.needsCollision(&object0, &object1)) return;
-  const auto wrap = [](const btCollisionObject& object) {
-    return btCollisionObjectWrapper(nullptr, object.getCollisionShape(), &object, object.getWorldTransform(), -1, -1);
-  };
-  const btCollisionObjectWrapper wrap0 = wrap(object0);
-  const btCollisionObjectWrapper wrap1 = wrap(object1);
-  pair.m_algorithm = dispatcher.findAlgorithm(&wrap0, &wrap1, nullptr, BT_CONTACT_POINT_ALGORITHMS);
-}
 
 /// The dispatcher has pools of its own.
 btDefaultCollisionConstructionInfo without_pools() {
@@ -153,6 +124,8 @@ void DynamicsWorld::move(btRigidBody& body) { bullet_->world->updateSingleAabb(&
 
 void DynamicsWorld::forget_past() {
   bullet_->world->forget_past();
+  bullet_->pairs.sleeping().take_all(
+      [this](const SleepingPairs::Pair& pair) { bullet_->pairs.addOverlappingPair(pair.proxy0, pair.proxy1); });
   const std::span<btPersistentManifold* const> all = manifolds();
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (i + kPrefetchDistance < all.size()) prefetch_head(*all[i + kPrefetchDistance]);
@@ -212,35 +185,28 @@ void DynamicsWorld::add_contacts_of_moved(std::vector<std::pair<int, int>>& cont
   bullet_->world->add_contacts_of_moved(contacts);
 }
 
-void DynamicsWorld::add_manifolds(const btRigidBody& a, const btRigidBody& b,
-                                  std::vector<const btPersistentManifold*>& found) const {
+const SleepingPairs& DynamicsWorld::sleeping_pairs() const { return bullet_->pairs.sleeping(); }
+
+void DynamicsWorld::add_contacts(const btRigidBody& a, const btRigidBody& b, std::vector<ContactView>& found) const {
   const auto proxy = [](const btRigidBody& body) { return const_cast<btBroadphaseProxy*>(body.getBroadphaseProxy()); };
   if (proxy(a) == nullptr || proxy(b) == nullptr) return;  // a static that is gone
+  sleeping_pairs().for_each_contact(*proxy(a), *proxy(b),
+                                    [&](const ContactView& contact) { found.push_back(contact); });
   const btBroadphasePair* const pair = bullet_->pairs.findPair(proxy(a), proxy(b));
   if (pair == nullptr || pair->m_algorithm == nullptr) return;
   btManifoldArray manifolds;
   pair->m_algorithm->getAllContactManifolds(manifolds);
   for (int i = 0; i < manifolds.size(); ++i) {
-    if (manifolds[i]->getNumContacts() > 0) found.push_back(manifolds[i]);
+    if (manifolds[i]->getNumContacts() > 0) found.emplace_back(*manifolds[i]);
   }
 }
 
 void DynamicsWorld::make_manifolds(btRigidBody& a, btRigidBody& b, std::vector<PartManifold>& result) {
   result.clear();
-  const Awake awake(a.isStaticObject() ? b : a);
+  bullet_->pairs.sleeping().remove(*a.getBroadphaseProxy(), *b.getBroadphaseProxy());
   btBroadphasePair* const pair = bullet_->pairs.addOverlappingPair(a.getBroadphaseProxy(), b.getBroadphaseProxy());
   if (pair == nullptr) return;
-  if (pair->m_algorithm == nullptr) make_algorithm(*pair, bullet_->dispatcher);
-  collect_manifolds(*pair, result);
-  // Only compounds and hulls need a collision test, because not all of their parts have manifolds. For other pairs it
-  // would be most of the work of a hand-off.
-  if (result.empty() || result.front().parts != Parts{}) {
-    bullet_->dispatcher.make_all_manifolds(true);
-    btCollisionDispatcher::defaultNearCallback(*pair, bullet_->dispatcher, bullet_->world->getDispatchInfo());
-    bullet_->dispatcher.make_all_manifolds(false);
-    collect_manifolds(*pair, result);
-  }
-  for (const PartManifold& made : result) made.manifold->clearManifold();
+  physics::make_manifolds(*pair, bullet_->dispatcher, bullet_->world->getDispatchInfo(), result);
 }
 
 void DynamicsWorld::cast(const btVector3& from, const btVector3& to, btCollisionWorld::RayResultCallback& hit) const {

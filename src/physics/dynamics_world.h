@@ -13,7 +13,9 @@
 #include "physics/contact_cache.h"
 #include "physics/contact_impulses.h"
 #include "physics/first_contacts.h"
+#include "physics/prefetch.h"
 #include "physics/settings.h"
+#include "physics/sleeping_pairs.h"
 
 class btRigidBody;
 class btTypedConstraint;
@@ -59,15 +61,19 @@ class DynamicsWorld {
 
   void step(double substep_s);
 
-  std::span<btPersistentManifold* const> manifolds() const;
-
   /// See World in physics/stepper.h. Valid until bodies come or go.
   bool knows_moved() const;
   std::span<btRigidBody* const> moved() const;
   std::span<const btRigidBody* const> called() const;
   void add_contacts_of_moved(std::vector<std::pair<int, int>>& contacts) const;
-  /// Appends the manifolds of two objects that have a point.
-  void add_manifolds(const btRigidBody& a, const btRigidBody& b, std::vector<const btPersistentManifold*>& found) const;
+  /// Appends the contacts of two objects.
+  void add_contacts(const btRigidBody& a, const btRigidBody& b, std::vector<ContactView>& found) const;
+  /// Calls `visit(ContactView)` for each contact, in no order.
+  template <class Visit>
+  void for_each_contact(Visit&& visit) const {
+    for_each_touching(manifolds(), [&](const btPersistentManifold& manifold) { visit(ContactView(manifold)); });
+    sleeping_pairs().for_each_contact(visit);
+  }
 
   /// Makes the manifolds of a pair, even if both bodies sleep, empties them, and lists them in `result`. Others would
   /// not outlive the next collision detection.
@@ -85,6 +91,8 @@ class DynamicsWorld {
   ContactImpulses& contact_impulses();
 
  private:
+  std::span<btPersistentManifold* const> manifolds() const;
+  const SleepingPairs& sleeping_pairs() const;
   void forget_whether_they_touch(btTypedConstraint& joint);
 
   struct Bullet;

@@ -53,6 +53,11 @@ class FirstContacts {
   /// First contacts since the last clear(), in order of substeps. A pair may be listed more than once.
   const std::vector<FirstContact>& found() const { return found_; }
   void clear() { found_.clear(); }
+  /// Frees the memory that many first contacts have used.
+  void free_spare_memory() {
+    new_ = {};
+    found_.shrink_to_fit();
+  }
 
  private:
   bool touched_before(const btPersistentManifold& manifold) const;

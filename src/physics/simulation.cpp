@@ -20,6 +20,7 @@
 #include "physics/part_surfaces.h"
 #include "physics/prefetch.h"
 #include "physics/soft/threads.h"
+#include "physics/spare_memory.h"
 
 namespace aurasim::physics {
 namespace {
@@ -31,6 +32,9 @@ btScalar half_thickness(const btCollisionShape& shape) {
   const btVector3 sides = high - low;
   return sides[sides.minAxis()] / 2;
 }
+
+/// A world of fewer bodies does not leave much memory behind.
+constexpr std::size_t kMany = 4096;
 
 constexpr std::uint64_t kRoomForStatics = 1U << 20U;
 
@@ -213,14 +217,9 @@ void Simulation::restore_pair(const core::ClusterState& cluster, std::span<const
     const double* row = &cluster.points.at(record.first_point * core::kContactPointDoubles);
     const Parts parts =
         parts_of(row, body0->getCollisionShape()->isCompound(), body1->getCollisionShape()->isCompound());
-    const auto made = std::find_if(of_pair_.begin(), of_pair_.end(), [&](const PartManifold& candidate) {
-      return candidate.manifold->getBody0() == body0 && candidate.parts == parts;
-    });
-    if (made == of_pair_.end()) continue;
-    for (std::uint32_t i = 0; i < record.point_count; ++i, row += core::kContactPointDoubles) {
-      made->manifold->addManifoldPoint(read_point(row));
-    }
-    world_.first_contacts().know(*made->manifold);
+    btPersistentManifold* const made =
+        restore_points(of_pair_, *body0, parts, std::span(row, record.point_count * core::kContactPointDoubles));
+    if (made != nullptr) world_.first_contacts().know(*made);
   }
 }
 
@@ -253,6 +252,7 @@ void Simulation::step() {
     joints_.finish_look(world_);
   }
   note_moved();
+  if (used_room_.is_spare(moved_count_)) free_spare_memory();
   world_.team().rest();
   stop_pushing();
   ++step_;
@@ -287,6 +287,16 @@ void Simulation::note_moved() {
     notes_.note_pair(ref(a), ref(b));
     if (!is_static(a)) moved_contacts_.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
   }
+}
+
+/// Frees the memory that steps with many awake bodies have used. What the lists hold stays.
+void Simulation::free_spare_memory() {
+  notes_.free_spare_memory();
+  world_.first_contacts().free_spare_memory();
+  core::free_memory(touched_, unsorted_contacts_, contacts_before_, copied_contacts_, found_contacts_, collisions_);
+  moved_.shrink_to_fit(), moved_contacts_.shrink_to_fit();
+  snapshot_.changed.shrink_to_fit(), snapshot_.changed_contacts.shrink_to_fit();
+  if (table_.size() > kMany) give_memory_back();
 }
 
 /// Sorts places in the table, without duplicates. Uses marks for many, because that takes no comparisons.

@@ -12,9 +12,11 @@
 #include "core/changed_state.h"
 #include "core/observation.h"
 #include "core/scene.h"
+#include "core/used_room.h"
 #include "physics/body_table.h"
 #include "physics/bounds.h"
 #include "physics/bullet_convert.h"
+#include "physics/contact_records.h"
 #include "physics/coupling.h"
 #include "physics/dynamics_world.h"
 #include "physics/halo.h"
@@ -123,7 +125,7 @@ class Simulation {
     return shown_at_.empty() ? static_cast<std::uint32_t>(place) : shown_at_[place];
   }
   void leave_out_guests(std::vector<core::Contact>& pairs) const;
-  bool is_for_us_to_copy(const btPersistentManifold& manifold) const;
+  bool is_for_us_to_copy(const ContactView& contact) const;
   void drop_guests(std::span<const core::BodyId> ids);
   void show_statics(core::Step n);
   void wake_near(std::span<const Bounds> changing);
@@ -178,6 +180,7 @@ class Simulation {
   void erase(const std::vector<bool>& leaving);
   void copy_changes(core::ChangedState& copy);
   void note_moved();
+  void free_spare_memory();
   void sort_places(std::vector<std::uint32_t>& places);
   void note(core::BodyId id);
   void note_new(core::BodyId id);
@@ -215,7 +218,7 @@ class Simulation {
   std::vector<core::BodySetpoint> new_setpoints_;
 
   std::shared_ptr<const core::ClusterState> shared_copy_;
-  std::vector<const btPersistentManifold*> found_manifolds_;
+  std::vector<ContactView> found_contacts_;
   std::unique_ptr<Coupling> coupling_;  ///< null: this world is not coupled with others
   std::vector<core::BodyId> broken_;    ///< bodies that broke down in the present state
   WatchedBodies watched_;
@@ -224,7 +227,7 @@ class Simulation {
   std::vector<Moved> arrived_, left_;
   core::ClusterState late_contacts_;  ///< contacts with bodies of other regions that are not here yet
 
-  mutable std::vector<KeyedManifold> copied_manifolds_;  ///< of copy_all(), kept for its memory
+  mutable std::vector<KeyedContact> copied_contacts_;  ///< of copy_all(), kept for its memory
   StateNotes notes_;
   KeptHash hash_;
   bool will_stop_sleepers_ = false;  ///< the next step may change sleepers
@@ -233,6 +236,7 @@ class Simulation {
   std::vector<std::uint32_t> moved_;           ///< places of the bodies that the last step has moved
   std::vector<core::Contact> moved_contacts_;  ///< their contacts, in no order
   std::size_t moved_count_ = 0;                ///< of bodies that the last step has moved
+  core::UsedRoom used_room_;                   ///< of lists with an item for each of these bodies
   std::vector<std::pair<int, int>> touched_;   ///< pairs in contact of them, by user index
   std::vector<core::BodyId> kicked_;           ///< bodies of the snapshot with a coming kick, or not yet born
   bool snapshot_is_fresh_ = false;

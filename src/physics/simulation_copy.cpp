@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <iterator>
 
-#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
-
 #include "core/progress.h"
 #include "physics/moving_body.h"
 #include "physics/prefetch.h"
@@ -30,18 +28,18 @@ void Simulation::copy_all(core::ClusterState& all) const {
     if (!is_guest(*table_[i].rigid)) all.bodies.push_back(table_[i].record());
   }
   core::Progress::mark();
-  copied_manifolds_.clear();
-  for_each_touching(world_.manifolds(), [&](const btPersistentManifold& manifold) {
-    if (coupling_ != nullptr && !is_for_us_to_copy(manifold)) return;
-    copied_manifolds_.push_back({ref_of(*manifold.getBody0()), ref_of(*manifold.getBody1()), &manifold});
+  copied_contacts_.clear();
+  world_.for_each_contact([&](const ContactView& contact) {
+    if (coupling_ != nullptr && !is_for_us_to_copy(contact)) return;
+    copied_contacts_.push_back({ref_of(contact.body0()), ref_of(contact.body1()), contact});
   });
-  write_manifolds(copied_manifolds_, all);
+  write_contacts(copied_contacts_, all);
   joints_.copy_all(table_, all);
 }
 
 /// The host of the body with the lower id copies a contact of two hosts.
-bool Simulation::is_for_us_to_copy(const btPersistentManifold& manifold) const {
-  const int a = manifold.getBody0()->getUserIndex(), b = manifold.getBody1()->getUserIndex();
+bool Simulation::is_for_us_to_copy(const ContactView& contact) const {
+  const int a = contact.body0().getUserIndex(), b = contact.body1().getUserIndex();
   const int first = is_static(a) || is_static(b) ? std::max(a, b) : std::min(a, b);
   return !is_guest(*table_[static_cast<std::size_t>(first)].rigid);
 }
@@ -72,19 +70,19 @@ void Simulation::copy_changes(core::ChangedState& copy) {
   });
   std::ranges::copy(notes_.for_copy.ids(), std::back_inserter(copy.replaced));
   std::ranges::copy(notes_.parted.ids(), std::back_inserter(copy.parted));
-  copied_manifolds_.clear();
+  copied_contacts_.clear();
   notes_.sort_pairs();
   for (const auto& [one, other] : notes_.pairs) {
     const btRigidBody *const a = find_object(one), *const b = find_object(other);
     if (a == nullptr || b == nullptr) continue;
-    found_manifolds_.clear();
-    world_.add_manifolds(*a, *b, found_manifolds_);
-    for (const btPersistentManifold* manifold : found_manifolds_) {
-      if (coupling_ != nullptr && !is_for_us_to_copy(*manifold)) continue;
-      copied_manifolds_.push_back({ref_of(*manifold->getBody0()), ref_of(*manifold->getBody1()), manifold});
+    found_contacts_.clear();
+    world_.add_contacts(*a, *b, found_contacts_);
+    for (const ContactView& contact : found_contacts_) {
+      if (coupling_ != nullptr && !is_for_us_to_copy(contact)) continue;
+      copied_contacts_.push_back({ref_of(contact.body0()), ref_of(contact.body1()), contact});
     }
   }
-  write_manifolds(copied_manifolds_, copy.now);
+  write_contacts(copied_contacts_, copy.now);
   joints_.copy_all(table_, copy.now);
 }
 

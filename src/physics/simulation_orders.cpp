@@ -125,10 +125,10 @@ void Simulation::take_out_what_broke() {
 
 /// Wakes the bodies that touch a body.
 void Simulation::wake_beside(core::BodyId id) {
-  for_each_touching(world_.manifolds(), [&](const btPersistentManifold& manifold) {
+  world_.for_each_contact([&](const ContactView& contact) {
     const btRigidBody* const gone = table_.find(id)->rigid.get();
     for (const auto& [one, other] :
-         {std::pair(manifold.getBody0(), manifold.getBody1()), std::pair(manifold.getBody1(), manifold.getBody0())}) {
+         {std::pair(&contact.body0(), &contact.body1()), std::pair(&contact.body1(), &contact.body0())}) {
       if (one != gone || other->getUserIndex() < 0) continue;
       const HostedBody& woken = table_[static_cast<std::size_t>(other->getUserIndex())];
       awaken(*woken.rigid);

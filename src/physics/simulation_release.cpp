@@ -3,8 +3,6 @@
 #include <stdexcept>
 #include <string>
 
-#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
-
 #include "core/progress.h"
 #include "physics/bullet_convert.h"
 #include "physics/moving_body.h"
@@ -43,29 +41,29 @@ Simulation::Copies Simulation::copy(const std::vector<std::uint32_t>& cluster_at
   for (std::size_t i = 0; i < table_.size(); ++i) {
     if (cluster_at[i] != kStays) copies.clusters[cluster_at[i]].bodies.push_back(table_[i].record());
   }
-  std::vector<std::vector<KeyedManifold>> manifolds(count);
-  for_each_touching(world_.manifolds(), [&](const btPersistentManifold& manifold) {
-    const int index0 = manifold.getBody0()->getUserIndex();
-    const int index1 = manifold.getBody1()->getUserIndex();
+  std::vector<std::vector<KeyedContact>> contacts(count);
+  world_.for_each_contact([&](const ContactView& contact) {
+    const int index0 = contact.body0().getUserIndex();
+    const int index1 = contact.body1().getUserIndex();
     const std::uint32_t cluster0 = is_static(index0) ? kStays : cluster_at[static_cast<std::size_t>(index0)];
     const std::uint32_t cluster1 = is_static(index1) ? kStays : cluster_at[static_cast<std::size_t>(index1)];
     if (cluster0 == kStays && cluster1 == kStays) return;
     if (is_static(index0) || is_static(index1) || cluster0 == cluster1) {
       const std::uint32_t cluster = cluster0 != kStays ? cluster0 : cluster1;
-      manifolds[cluster].push_back({ref_of(*manifold.getBody0()), ref_of(*manifold.getBody1()), &manifold});
+      contacts[cluster].push_back({ref_of(contact.body0()), ref_of(contact.body1()), contact});
     } else {
       ++copies.across;
       if (!whole) return;
       for (const std::uint32_t cluster : {cluster0, cluster1}) {
         if (cluster == kStays) continue;
-        manifolds[cluster].push_back({ref_of(*manifold.getBody0()), ref_of(*manifold.getBody1()), &manifold});
+        contacts[cluster].push_back({ref_of(contact.body0()), ref_of(contact.body1()), contact});
       }
     }
   });
   for (std::size_t i = 0; i < count; ++i) {
     core::ClusterState& cluster = copies.clusters[i];
     core::Progress::mark();
-    write_manifolds(manifolds[i], cluster);
+    write_contacts(contacts[i], cluster);
     copies.across += joints_.append_to(cluster);
   }
   return copies;

@@ -4,8 +4,6 @@
 #include <limits>
 #include <tuple>
 
-#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
-
 #include "core/progress.h"
 #include "physics/moving_body.h"
 #include "physics/prefetch.h"
@@ -14,6 +12,8 @@
 namespace aurasim::physics {
 namespace {
 
+/// Room for so many bodies is never given back.
+constexpr std::size_t kFewBodies = 1024;
 /// In place of the place of a guest.
 constexpr std::uint32_t kNotShown = std::numeric_limits<std::uint32_t>::max();
 
@@ -126,6 +126,7 @@ void Simulation::find_shown() {
     next = 0;
     for (const HostedBody& body : table_.bodies()) shown_at_.push_back(is_guest(*body.rigid) ? kNotShown : next++);
   }
+  if (snapshot_.bodies.capacity() > kFewBodies + 2 * next) snapshot_.bodies = {};
   snapshot_.bodies.resize(next);
 }
 
@@ -156,8 +157,8 @@ void Simulation::show_state(const HostedBody& body, std::size_t place, double co
 void Simulation::list_contacts() {
   unsorted_contacts_.clear();
   contacts_before_.assign(table_.size() + 1, 0);
-  for_each_touching(world_.manifolds(), [this](const btPersistentManifold& manifold) {
-    const auto [a, b] = std::minmax({manifold.getBody0()->getUserIndex(), manifold.getBody1()->getUserIndex()});
+  world_.for_each_contact([this](const ContactView& contact) {
+    const auto [a, b] = std::minmax({contact.body0().getUserIndex(), contact.body1().getUserIndex()});
     if (is_static(a)) return;  // no test of distance: gaps of points never exceed kContactMargin
     unsorted_contacts_.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
     ++contacts_before_[static_cast<std::size_t>(a) + 1];

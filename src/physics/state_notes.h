@@ -70,6 +70,11 @@ struct StateNotes {
     if (pairs.size() > 2 * known_pairs + 256) sort_pairs();
   }
 
+  void free_spare_memory() {
+    for (ChangedBodies* reader : {&for_snapshot, &for_hash, &for_step, &for_copy, &parted}) reader->free_spare_memory();
+    pairs.shrink_to_fit();
+  }
+
   /// No copy is shared any more.
   void give_up_copy() {
     for_copy.note_all();

@@ -51,6 +51,18 @@ TEST_F(CutsOfANode, ARedoGoesBackFarEnoughToBringThePairTogether) {
   EXPECT_GE(redo.pairs[0].until, touch);
 }
 
+/// Its memory comes from a cut of a state in which all bodies had changed.
+TEST_F(CutsOfANode, ACutOfFewChangesTakesLittleMemory) {
+  Cut cut = cut_of(310);
+  cut.bodies.now.bodies.reserve(100'000);
+  cut.bodies.now.points.reserve(100'000);
+  cut.bodies.now.bodies.resize(3);
+  cuts_.keep(std::move(cut));
+  const core::ClusterState& kept = cuts_.back_to(310).bodies.now;
+  EXPECT_EQ(kept.bodies.size(), 3);
+  EXPECT_LT(kept.bodies.capacity() + kept.points.capacity(), 100);
+}
+
 TEST_F(CutsOfANode, TheEarliestAlarmDecidesAndAllPairsAreNamedInOrder) {
   const core::Redo redo = plan({alarm(250, 7, 8), alarm(150, 3, 4)});
   EXPECT_EQ(redo.cut, plan({alarm(150)}).cut);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
@@ -12,6 +11,7 @@
 #include <LinearMath/btAabbUtil2.h>
 
 #include "core/progress.h"
+#include "physics/contact_pairs.h"
 #include "physics/dispatcher.h"
 #include "physics/first_contacts.h"
 #include "physics/moving_static.h"
@@ -21,6 +21,7 @@
 #include "physics/soft/convert.h"
 #include "physics/soft/islands.h"
 #include "physics/soft/kept_contacts.h"
+#include "physics/soft/pair_note.h"
 
 namespace aurasim::physics {
 namespace {
@@ -64,30 +65,6 @@ bool bounds_overlap(const btBroadphasePair& pair) {
   if (!boxes_overlap(pair)) return false;
   if (is_plane(a)) return !is_above(b, body_of(a));
   return !is_plane(b) || !is_above(a, body_of(b));
-}
-
-/// Facts about a pair that hold as long as it lasts. They are kept in a field of the pair that Bullet does not use,
-/// because reading the bodies would miss the cache. All 0: not known yet.
-struct PairNote {
-  static constexpr std::uint32_t kKnown = 1u << 31, kMayTouch = 1u << 30, kSlot = kMayTouch - 1;
-
-  std::uint32_t a = 0, b_and_flags = 0;  ///< slots of the bodies
-
-  bool is_known() const { return (b_and_flags & kKnown) != 0; }
-  /// False if a joint keeps the bodies from touching.
-  bool may_touch() const { return (b_and_flags & kMayTouch) != 0; }
-  std::uint32_t b() const { return b_and_flags & kSlot; }
-};
-
-PairNote noted(const btBroadphasePair& pair) { return std::bit_cast<PairNote>(pair.m_internalInfo1); }
-
-PairNote note_of(btBroadphasePair& pair) {
-  if (noted(pair).is_known()) return noted(pair);
-  const btCollisionObject &a = body_of(*pair.m_pProxy0), &b = body_of(*pair.m_pProxy1);
-  const bool may_touch = a.checkCollideWith(&b) && b.checkCollideWith(&a);
-  const PairNote note = {slot_of(a), slot_of(b) | PairNote::kKnown | (may_touch ? PairNote::kMayTouch : 0)};
-  pair.m_internalInfo1 = std::bit_cast<void*>(note);
-  return note;
 }
 
 SoftTouch touch_of(btPersistentManifold& manifold) {
@@ -158,6 +135,11 @@ void SoftContacts::look(btOverlappingPairCache& pairs, btCollisionDispatcher& di
     came_.insert(came_.end(), list.came.begin(), list.came.end());
     parted_.insert(parted_.end(), list.parted.begin(), list.parted.end());
   }
+  if (!islands_.knows_sleepers()) {
+    static_cast<const ContactPairs&>(pairs).sleeping().for_each_touch([this](std::uint32_t a, std::uint32_t b) {
+      touches_of_sleepers_.push_back({a, b});
+    });
+  }
   for (const List& list : lists_) {
     for (const WillMeet& two : list.will_meet) {
       core::Progress::mark();
@@ -205,7 +187,7 @@ void SoftContacts::look(List& list, btOverlappingPairCache& pairs, int first, in
     const PairNote note = note_of(all[i]);
     if (!note.may_touch()) continue;
     if (both_sleep(note)) {  // touches of sleepers are unchanged
-      if (!knows_sleepers) collect_of_sleepers(list, all[i]);
+      if (!knows_sleepers && touch(all[i], list.manifolds)) list.touches_of_sleepers.push_back({note.a, note.b()});
       continue;
     }
     if (islands_.slept(note.a) && islands_.slept(note.b())) know_touches(list, all[i]);
@@ -323,7 +305,7 @@ void SoftContacts::collect_ahead(const btBroadphasePair& pair, const SoftMeeting
   const auto velocity = [](const btCollisionObject& object, const btVector3& r) {
     return btRigidBody::upcast(&object)->getVelocityInLocalPoint(r);
   };
-  ahead_.push_back({&pair, first, static_cast<std::uint32_t>(list.patches.size()) - first,
+  ahead_.push_back({pair.m_pProxy0, pair.m_pProxy1, first, static_cast<std::uint32_t>(list.patches.size()) - first,
                     b.getWorldTransform().getOrigin() + meeting.r_b,
                     velocity(a, meeting.r_a) - velocity(b, meeting.r_b)});
 }
@@ -334,13 +316,6 @@ void SoftContacts::collect(List& list, const btBroadphasePair& pair) {
     if (manifolds[i]->getNumContacts() == 0) continue;
     SoftTouch& touch = list.touches.emplace_back(touch_of(*manifolds[i]));
     if (touch.acts) read(list, touch, {0, 0, 0});
-  }
-}
-
-void SoftContacts::collect_of_sleepers(List& list, const btBroadphasePair& pair) {
-  const btManifoldArray& manifolds = manifolds_of(pair, list.manifolds);
-  for (int i = 0; i < manifolds.size(); ++i) {
-    if (manifolds[i]->getNumContacts() > 0) list.touches_of_sleepers.push_back(touch_of(*manifolds[i]));
   }
 }
 

@@ -23,7 +23,7 @@ class SoftIslands;
 
 /// Two bodies with contacts ahead of time.
 struct SoftAhead {
-  const btBroadphasePair* pair = nullptr;
+  btBroadphaseProxy *proxy_a = nullptr, *proxy_b = nullptr;
   std::uint32_t first_patch = 0, patches = 0;  ///< SoftContacts::patches_of()
   btVector3 p{0, 0, 0};                        ///< where the bodies will touch, m
   btVector3 v{0, 0, 0};  ///< velocity of the first relative to the second at the start of the step, m/s
@@ -55,8 +55,8 @@ class SoftContacts {
 
   /// Touches with an awake body, in no order.
   std::span<const SoftTouch> touches() const { return touches_; }
-  /// Touches of two sleepers, if their islands are not known. They have no patches.
-  std::span<const SoftTouch> touches_of_sleepers() const { return touches_of_sleepers_; }
+  /// Touches of two sleepers, if their islands are not known.
+  std::span<const SleepersTouch> touches_of_sleepers() const { return touches_of_sleepers_; }
   /// Slots of sleepers that touched a body in the last step that is awake, and do not touch it any more.
   std::span<const std::uint32_t> parted() const { return parted_; }
   std::span<SoftPatch> patches_of(const SoftTouch& touch) {
@@ -78,7 +78,8 @@ class SoftContacts {
   /// Results of one thread.
   struct alignas(64) List {
     btManifoldArray manifolds;
-    std::vector<SoftTouch> touches, touches_of_sleepers;
+    std::vector<SoftTouch> touches;
+    std::vector<SleepersTouch> touches_of_sleepers;
     std::vector<btPersistentManifold*> came;  ///< new ones of two bodies that move
     std::vector<std::uint32_t> parted;
     std::vector<SoftPatch> patches;
@@ -91,7 +92,6 @@ class SoftContacts {
   template <class Wanted>
   void add_touches_of_sleepers(btOverlappingPairCache& pairs, Wanted&& wanted);
   void collect(List& list, const btBroadphasePair& pair);
-  void collect_of_sleepers(List& list, const btBroadphasePair& pair);
   void gather(const soft::Worker& worker);
   void know_touches(List& list, const btBroadphasePair& pair) const;
   void look_ahead(List& list, btBroadphasePair& pair);
@@ -108,7 +108,8 @@ class SoftContacts {
   const SoftIslands& islands_;
   const FirstContacts& first_contacts_;
   std::vector<List> lists_;
-  std::vector<SoftTouch> touches_, touches_of_sleepers_;
+  std::vector<SoftTouch> touches_;
+  std::vector<SleepersTouch> touches_of_sleepers_;
   std::vector<std::uint32_t> parted_;
   std::vector<SoftAhead> ahead_;
   std::vector<btPersistentManifold*> came_;

@@ -9,6 +9,7 @@
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include "core/used_room.h"
 #include "physics/moving_body.h"
 #include "physics/prefetch.h"
 
@@ -90,6 +91,13 @@ void SoftIslands::forget_past() {
   called_.clear();
   changes_.clear();
   for (std::uint32_t slot = 1; slot < entries_.size(); ++slot) changes_.push_back(slot);
+}
+
+void SoftIslands::free_spare_memory() {
+  core::free_memory(touches_, unsorted_, ends_, joints_, order_);
+  for (auto* list : {&seams_, &seams_of_sleepers_}) list->shrink_to_fit();
+  for (auto* list : {&called_, &changes_, &settling_, &marked_}) list->shrink_to_fit();
+  awake_.shrink_to_fit();
 }
 
 void SoftIslands::unlist(std::uint32_t slot) {
@@ -180,12 +188,12 @@ void SoftIslands::unite(std::uint32_t a, std::uint32_t b, std::vector<Seam>& sea
   parents_[std::max(one, other)] = std::min(one, other);
 }
 
-void SoftIslands::find_parts(std::span<const SoftTouch> touches, std::span<const SoftTouch> of_sleepers,
+void SoftIslands::find_parts(std::span<const SoftTouch> touches, std::span<const SleepersTouch> of_sleepers,
                              std::span<btTypedConstraint* const> joints) {
   wakes_any_ = false;
   seams_.clear();
   for (const SoftTouch& touch : touches) unite(touch.slot_a, touch.slot_b, seams_);
-  for (const SoftTouch& touch : of_sleepers) unite(touch.slot_a, touch.slot_b, seams_of_sleepers_);
+  for (const SleepersTouch& touch : of_sleepers) unite(touch.slot_a, touch.slot_b, seams_of_sleepers_);
   for (const btTypedConstraint* joint : joints) {
     const std::uint32_t one = slot_of(joint->getRigidBodyA()), other = slot_of(joint->getRigidBodyB());
     const bool both_sleep = sleeps(one) && sleeps(other);

@@ -40,6 +40,9 @@ class SoftIslands {
   /// Forgets which bodies slept, as if all of them had just entered the world.
   void forget_past();
 
+  /// Frees the memory of lists that a step makes anew. Call before call() or right after it.
+  void free_spare_memory();
+
   /// Finds the awake bodies at the start of a step.
   void call();
   /// Did the body sleep at the last call(), and at the one in the step before? Always true for statics.
@@ -52,7 +55,7 @@ class SoftIslands {
   bool are_at_rest() const { return awake_.empty() && knows_sleepers_; }
 
   /// Finds the parts, and which of them stir.
-  void find_parts(std::span<const SoftTouch> touches, std::span<const SoftTouch> of_sleepers,
+  void find_parts(std::span<const SoftTouch> touches, std::span<const SleepersTouch> of_sleepers,
                   std::span<btTypedConstraint* const> joints);
   /// Puts parts to sleep or wakes them. `parted`: slots of sleepers that have lost the touch of a body that is awake.
   void settle(std::span<const SoftTouch> touches, std::span<const std::uint32_t> parted,

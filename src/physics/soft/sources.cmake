@@ -12,6 +12,7 @@ set(soft_step_sources
   soft/kernels.cpp
   soft/layout.cpp
   soft/patches.cpp
+  soft/resting_pairs.cpp
   soft/seam_parcels.cpp
   soft/shared.cpp
   soft/shared_rows.cpp

@@ -45,6 +45,11 @@ struct SoftTouch {
   std::uint32_t list = 0, first_patch = 0, patches = 0;  ///< SoftContacts::patches_of()
 };
 
+/// Slots of two sleepers that touch.
+struct SleepersTouch {
+  std::uint32_t slot_a = 0, slot_b = 0;
+};
+
 /// The slot of a body in SoftIslands; 0 for statics and for objects in no world.
 inline std::uint32_t slot_of(const btCollisionObject& object) {
   return static_cast<std::uint32_t>(std::max(0, object.getUserIndex3()));

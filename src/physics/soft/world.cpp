@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,13 +10,17 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include "core/progress.h"
+#include "core/used_room.h"
 #include "physics/bounds.h"
 #include "physics/broadphase.h"
 #include "physics/contact_impulses.h"
+#include "physics/contact_pairs.h"
+#include "physics/dispatcher.h"
 #include "physics/first_contacts.h"
 #include "physics/settings.h"
 #include "physics/soft/contacts.h"
 #include "physics/soft/islands.h"
+#include "physics/soft/resting_pairs.h"
 #include "physics/soft/shared.h"
 #include "physics/soft/step.h"
 #include "physics/soft/threads.h"
@@ -34,41 +39,46 @@ class SoftWorld final : public World {
       : World(&parts.dispatcher, &parts.broadphase, &parts.solver, &parts.configuration),
         first_contacts_(parts.first_contacts),
         contact_impulses_(parts.contact_impulses),
-        contacts_(settings.step_s, settings.continuous, parts.team, islands_, first_contacts_),
+        settings_(settings),
         moving_statics_(parts.moving_statics),
-        step_(settings, parts.team),
         team_(parts.team),
-        looks_ahead_(settings.continuous),
-        block_m_(settings.block_m) {}
+        resting_(static_cast<ContactPairs&>(*parts.broadphase.getOverlappingPairCache()),
+                 static_cast<Dispatcher&>(parts.dispatcher), parts.first_contacts) {
+    make_lists();
+  }
 
   int stepSimulation(btScalar step_s, int, btScalar) override {
     islands_.call();
+    if (used_room_.is_spare(islands_.awake().size())) free_spare_memory();
+    bring_back([this](std::uint32_t slot) { return !islands_.sleeps(slot); });
+    resting_.put_away(islands_);
     team_.employ_for(islands_.awake().size());
     moved_.assign(islands_.awake().begin(), islands_.awake().end());
     damp(step_s);
     bound();
     if (!islands_.are_at_rest()) m_broadphasePairCache->calculateOverlappingPairs(m_dispatcher1);
     core::Progress::mark();
-    contacts_.look(*getPairCache(), static_cast<btCollisionDispatcher&>(*m_dispatcher1), getDispatchInfo(),
-                   getGravity());
-    first_contacts_.report(contacts_.came(), *getPairCache());
-    islands_.find_parts(contacts_.touches(), contacts_.touches_of_sleepers(), span_of(m_constraints));
+    contacts_->look(*getPairCache(), static_cast<btCollisionDispatcher&>(*m_dispatcher1), getDispatchInfo(),
+                    getGravity());
+    first_contacts_.report(contacts_->came(), *getPairCache());
+    islands_.find_parts(contacts_->touches(), contacts_->touches_of_sleepers(), span_of(m_constraints));
     if (shared_) shared_->tell_stirs(islands_);
-    islands_.settle(contacts_.touches(), contacts_.parted(), span_of(m_constraints));
+    islands_.settle(contacts_->touches(), contacts_->parted(), span_of(m_constraints));
     if (islands_.has_woken_any()) {
-      contacts_.add_woken(*getPairCache());
+      bring_back([this](std::uint32_t slot) { return islands_.is_woken(slot); });
+      contacts_->add_woken(*getPairCache());
       std::ranges::copy_if(islands_.awake(), std::back_inserter(moved_),
                            [this](const btRigidBody* body) { return islands_.is_woken(slot_of(*body)); });
     }
-    if (shared_ && shared_->meet(contacts_, islands_)) {
-      contacts_.add_woken_guests(*getPairCache());
+    if (shared_ && shared_->meet(*contacts_, islands_)) {
+      contacts_->add_woken_guests(*getPairCache());
       std::ranges::copy_if(islands_.guests(), std::back_inserter(moved_),
                            [this](const btRigidBody* guest) { return islands_.is_woken(slot_of(*guest)); });
     }
-    islands_.sort(contacts_.touches(), team_);
+    islands_.sort(contacts_->touches(), team_);
     core::Progress::mark();
-    step_.solve(islands_.awake(), moving_statics_, islands_.touches(), contacts_, islands_.joints(), getGravity(),
-                contact_impulses_, shared_ ? &*shared_ : nullptr);
+    step_->solve(islands_.awake(), moving_statics_, islands_.touches(), *contacts_, islands_.joints(), getGravity(),
+                 contact_impulses_, shared_ ? &*shared_ : nullptr);
     report_met();
     islands_.rest(step_s);
     if (shared_) shared_->call_sleepers(islands_);
@@ -79,14 +89,14 @@ class SoftWorld final : public World {
 
   void forget_past() override { islands_.forget_past(); }
 
-  void couple(const Coupling& coupling) override { shared_.emplace(coupling, block_m_); }
+  void couple(const Coupling& coupling) override { shared_.emplace(coupling, settings_.block_m); }
 
   bool knows_moved() const override { return true; }
   std::span<btRigidBody* const> moved() const override { return moved_; }
   std::span<const btRigidBody* const> called() const override { return called_; }
   void add_contacts_of_moved(std::vector<std::pair<int, int>>& contacts) const override {
     if (moved_.empty()) return;
-    for (const SoftTouch& touch : contacts_.touches()) {
+    for (const SoftTouch& touch : contacts_->touches()) {
       if (touch.manifold == nullptr || touch.manifold->getNumContacts() == 0) continue;
       contacts.emplace_back(std::min(touch.a, touch.b), std::max(touch.a, touch.b));
     }
@@ -106,14 +116,38 @@ class SoftWorld final : public World {
   }
 
  private:
+  /// Makes the parts that hold nothing but lists of the present step.
+  void make_lists() {
+    contacts_.emplace(settings_.step_s, settings_.continuous, team_, islands_, first_contacts_);
+    step_.emplace(settings_, team_);
+  }
+
+  /// Frees the memory that steps with many awake bodies have used.
+  void free_spare_memory() {
+    make_lists();
+    islands_.free_spare_memory();
+    core::free_memory(moved_, lists_);
+  }
+
+  /// Brings back the pairs of awake bodies that are `wanted(slot)`.
+  template <class Wanted>
+  void bring_back(Wanted&& wanted) {
+    const SleepingPairs& sleeping = static_cast<const ContactPairs&>(*getPairCache()).sleeping();
+    if (sleeping.empty()) return;
+    for (const btRigidBody* body : islands_.awake()) {
+      const std::uint32_t slot = slot_of(*body);
+      if (sleeping.has(slot) && wanted(slot)) resting_.bring_back(slot, getDispatchInfo());
+    }
+  }
+
   /// Reports the first contacts of bodies that touched within the step, perhaps only for a part of it.
   void report_met() {
-    for (const SoftAhead& ahead : contacts_.ahead()) {
-      if (std::ranges::none_of(contacts_.patches_of(ahead), &SoftPatch::has_pressed)) continue;
-      const auto& a = *static_cast<const btCollisionObject*>(ahead.pair->m_pProxy0->m_clientObject);
-      const auto& b = *static_cast<const btCollisionObject*>(ahead.pair->m_pProxy1->m_clientObject);
+    for (const SoftAhead& ahead : contacts_->ahead()) {
+      if (std::ranges::none_of(contacts_->patches_of(ahead), &SoftPatch::has_pressed)) continue;
+      const auto& a = *static_cast<const btCollisionObject*>(ahead.proxy_a->m_clientObject);
+      const auto& b = *static_cast<const btCollisionObject*>(ahead.proxy_b->m_clientObject);
       first_contacts_.add({a.getUserIndex(), b.getUserIndex(), 0, static_cast<double>(ahead.v.length()), ahead.p},
-                          *ahead.pair);
+                          *getPairCache()->findPair(ahead.proxy_a, ahead.proxy_b));
     }
   }
 
@@ -151,8 +185,8 @@ class SoftWorld final : public World {
     const btVector3 margin(gContactBreakingThreshold, gContactBreakingThreshold, gContactBreakingThreshold);
     btVector3 low, high;
     body.getAabb(low, high);
-    if (looks_ahead_) {
-      const btVector3 way = contacts_.way(body, getGravity()), none(0, 0, 0);
+    if (settings_.continuous) {
+      const btVector3 way = contacts_->way(body, getGravity()), none(0, 0, 0);
       btVector3 back = way, on = way;
       back.setMin(none), on.setMax(none);
       low += back, high += on;
@@ -172,15 +206,16 @@ class SoftWorld final : public World {
   FirstContacts& first_contacts_;
   ContactImpulses& contact_impulses_;
   SoftIslands islands_;
-  SoftContacts contacts_;
-  std::vector<btRigidBody*> moved_;  ///< bodies that were awake at the start of the last step, or were woken in it
+  const Settings settings_;
+  core::UsedRoom used_room_;
+  std::optional<SoftContacts> contacts_;  ///< never empty
+  std::vector<btRigidBody*> moved_;       ///< bodies that were awake at the start of the last step, or were woken in it
   std::vector<const btRigidBody*> called_;  ///< sleepers that wake in the next step
   const std::vector<btRigidBody*>& moving_statics_;
-  SoftStep step_;
+  std::optional<SoftStep> step_;  ///< never empty
   soft::Team& team_;
+  RestingPairs resting_;
   std::vector<List> lists_;
-  bool looks_ahead_;
-  double block_m_;
   std::optional<SoftShared> shared_;  ///< if this world is coupled with those of other regions
 };
 
