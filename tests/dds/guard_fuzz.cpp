@@ -1,6 +1,7 @@
 // Throws datagrams at a live participant, which must neither end nor hang nor grow; see datagram_mutator.h.
 //   dds_guard_fuzz [--count N] [--seed S] [--keep FILE]        a target of its own, in a domain that is free
 //   dds_guard_fuzz --domain D [--count N] [--seed S]           whoever is in domain D: a run of `aurasim launch`
+//   dds_guard_fuzz --newcomer D                                sends nothing; exit 0 once it hears a target in domain D
 // All on loopback: to every port of the domain's first participants, unicast and multicast. A target that ends or
 // hangs: exit 1, and with --keep the last datagrams stand in FILE, each after its length in 4 octets (little-endian).
 #include <charconv>
@@ -36,10 +37,10 @@ constexpr std::size_t kBatch = 256;         // between two looks at the target
 constexpr std::size_t kKept = 20'000;
 constexpr auto kLongestSilence = 20s;
 
-/// The program that the datagrams are for: its last line, and whether it lives.
+/// A program of this test, such as the one that the datagrams are for: its last line, and whether it lives.
 class Target {
  public:
-  Target(const std::string& program, std::uint32_t domain) {
+  Target(const std::string& program, std::vector<std::string> words) {
     int ends[2];
     if (::pipe(ends) != 0) throw std::runtime_error("pipe");
     pid_ = ::fork();
@@ -48,7 +49,10 @@ class Target {
       ::close(ends[0]);
       ::close(ends[1]);
       ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-      ::execl(program.c_str(), program.c_str(), std::to_string(domain).c_str(), nullptr);
+      std::vector<char*> arguments = {const_cast<char*>(program.c_str())};  // NOLINT: as POSIX has it
+      for (std::string& word : words) arguments.push_back(word.data());
+      arguments.push_back(nullptr);
+      ::execv(program.c_str(), arguments.data());
       ::_exit(127);
     }
     ::close(ends[1]);
@@ -174,6 +178,7 @@ class Sprayer {
 struct Arguments {
   std::uint64_t count = 200'000, seed = 1;
   std::optional<std::uint32_t> domain;  ///< of others
+  std::optional<std::uint32_t> heard_domain;  ///< of a newcomer
   std::string keep;
 };
 
@@ -216,13 +221,21 @@ class Honest {
 };
 
 /// Somebody new hears the target's status.
-bool newcomer_hears(std::uint32_t domain) {
+bool hears(std::uint32_t domain) {
   Participant participant(settings_for(domain));
   ControlBus control(participant, {});
   return holds_in_time([&] {
     const auto statuses = control.statuses();
     return std::ranges::any_of(statuses, [](const auto& entry) { return core::value_of(entry.first) == 0; });
   });
+}
+
+/// A process of its own. The participants of this one have ids that differ in one octet: a changed announcement may have
+/// taken the next one's, and then nobody listens to the real one, as in every run without keys.
+bool newcomer_hears(const std::string& own_program, std::uint32_t domain) {
+  Target newcomer(own_program, {"--newcomer", std::to_string(domain)});
+  holds_in_time([&] { return newcomer.ended().has_value(); });
+  return newcomer.ended() == 0;
 }
 
 /// Until all was looked at; false when the target has ended or says nothing.
@@ -265,14 +278,20 @@ bool spray(const Arguments& arguments, std::uint32_t domain, Target* target, Kep
 int fail(const Arguments& arguments, Target& target, const Kept& kept, const std::string& what) {
   if (!arguments.keep.empty()) kept.write(arguments.keep);
   std::cerr << "seed " << arguments.seed << ": " << what << "; it last said \"" << target.last_line() << "\"";
+  target.ask_to_end();
+  if (holds_in_time([&] { return target.ended().has_value(); })) {
+    target.silence();
+    std::cerr << ", at its end \"" << target.last_line() << "\"";
+  }
   if (const auto code = target.ended()) std::cerr << ", and ended with " << *code;
   std::cerr << std::endl;
   return 1;
 }
 
-int against_own_target(const Arguments& arguments, const std::string& program) {
+int against_own_target(const Arguments& arguments) {
+  const auto own_program = std::filesystem::canonical("/proc/self/exe");
   const test::LeasedDomain domain;
-  Target target(program, domain.number());
+  Target target(own_program.parent_path() / "dds_fuzz_target", {std::to_string(domain.number())});
   Kept kept;
   {
     const Honest honest(domain.number());
@@ -283,7 +302,7 @@ int against_own_target(const Arguments& arguments, const std::string& program) {
   target.silence();
   std::this_thread::sleep_for(1s);
   if (target.silence() > kLongestSilence) return fail(arguments, target, kept, "the target says nothing");
-  if (!newcomer_hears(domain.number())) return fail(arguments, target, kept, "a newcomer does not hear it");
+  if (!newcomer_hears(own_program, domain.number())) return fail(arguments, target, kept, "a newcomer does not hear it");
   target.ask_to_end();
   if (!holds_in_time([&] { return target.ended().has_value(); }) || target.ended() != 0) {
     return fail(arguments, target, kept, "it does not end as it should");
@@ -322,6 +341,8 @@ Arguments arguments_in(const std::vector<std::string_view>& words) {
       arguments.seed = number_in<std::uint64_t>(words[i + 1]);
     else if (words[i] == "--domain")
       arguments.domain = number_in<std::uint32_t>(words[i + 1]);
+    else if (words[i] == "--newcomer")
+      arguments.heard_domain = number_in<std::uint32_t>(words[i + 1]);
     else if (words[i] == "--keep")
       arguments.keep = words[i + 1];
     else
@@ -336,7 +357,6 @@ Arguments arguments_in(const std::vector<std::string_view>& words) {
 int main(int argc, char** argv) {
   using namespace aurasim::dds::testing;
   const Arguments arguments = arguments_in({argv + 1, argv + argc});
-  if (arguments.domain) return against_a_run(arguments);
-  const auto program = std::filesystem::canonical("/proc/self/exe").parent_path() / "dds_fuzz_target";
-  return against_own_target(arguments, program.string());
+  if (arguments.heard_domain) return hears(*arguments.heard_domain) ? 0 : 1;
+  return arguments.domain ? against_a_run(arguments) : against_own_target(arguments);
 }
