@@ -31,13 +31,14 @@ bool is_plane(const btCollisionObject& object) {
   return object.getCollisionShape()->getShapeType() == STATIC_PLANE_PROXYTYPE;
 }
 
-/// Drops points that have slid away. Bullet looks for more corners on a plane only while a manifold has fewer than four
-/// points, and it would count these.
+/// Drops points that Bullet has found and that have slid away. It looks for more corners on a plane only while a
+/// manifold has fewer than four points, and it would count these. Points with names are all found anew each time.
 void drop_stale_points(btCollisionAlgorithm& algorithm) {
   thread_local btManifoldArray manifolds;  // keeps its memory
   manifolds.resizeNoInitialize(0);
   algorithm.getAllContactManifolds(manifolds);
   for (int i = 0; i < manifolds.size(); ++i) {
+    if (manifolds[i]->getNumContacts() == 0 || manifolds[i]->getContactPoint(0).m_partId0 >= 0) continue;
     manifolds[i]->refreshContactPoints(manifolds[i]->getBody0()->getWorldTransform(),
                                        manifolds[i]->getBody1()->getWorldTransform());
   }
@@ -60,6 +61,9 @@ Dispatcher::Dispatcher(btCollisionConfiguration& configuration, const InnerEdges
       inner_edges_(inner_edges),
       hull_contacts_(
           *configuration.getCollisionAlgorithmCreateFunc(CONVEX_HULL_SHAPE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE),
+          kContactMargin),
+      cylinder_contacts_(
+          *configuration.getCollisionAlgorithmCreateFunc(CONVEX_HULL_SHAPE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE),
           kContactMargin) {
   setNearCallback(near_callback);
   registerCollisionCreateFunc(
@@ -68,6 +72,11 @@ Dispatcher::Dispatcher(btCollisionConfiguration& configuration, const InnerEdges
   for (const int other : {CUSTOM_POLYHEDRAL_SHAPE_TYPE, BOX_SHAPE_PROXYTYPE}) {
     registerCollisionCreateFunc(CUSTOM_POLYHEDRAL_SHAPE_TYPE, other, &hull_contacts_);
     registerCollisionCreateFunc(other, CUSTOM_POLYHEDRAL_SHAPE_TYPE, &hull_contacts_);
+  }
+  for (const int other : {CUSTOM_POLYHEDRAL_SHAPE_TYPE, BOX_SHAPE_PROXYTYPE, STATIC_PLANE_PROXYTYPE,
+                          TRIANGLE_SHAPE_PROXYTYPE, CYLINDER_SHAPE_PROXYTYPE}) {
+    registerCollisionCreateFunc(CYLINDER_SHAPE_PROXYTYPE, other, &cylinder_contacts_);
+    registerCollisionCreateFunc(other, CYLINDER_SHAPE_PROXYTYPE, &cylinder_contacts_);
   }
   const auto use_primitive = [this](int one, int other) {
     registerCollisionCreateFunc(one, other, &primitive_contacts_);

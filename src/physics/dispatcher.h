@@ -8,6 +8,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 
 #include "physics/block_pool.h"
+#include "physics/cylinder_contacts.h"
 #include "physics/hull_contacts.h"
 #include "physics/primitive_contacts.h"
 
@@ -42,6 +43,7 @@ class Dispatcher : public btCollisionDispatcher {
   /// While this is set, all pairs get a manifold, also if they do not touch.
   void make_all_manifolds(bool wanted) {
     hull_contacts_.make_all_manifolds(wanted);
+    cylinder_contacts_.make_all_manifolds(wanted);
     primitive_contacts_.make_all_manifolds(wanted);
   }
 
@@ -50,6 +52,7 @@ class Dispatcher : public btCollisionDispatcher {
 
   const InnerEdges& inner_edges_;
   HullContactsMaker hull_contacts_;
+  CylinderContactsMaker cylinder_contacts_;
   PrimitiveContactsMaker primitive_contacts_{kContactMargin};
   // Memory that grows with the contacts: Bullet's own pools take 6 MB in a world without any.
   BlockPool manifolds_{sizeof(btPersistentManifold)};

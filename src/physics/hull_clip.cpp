@@ -14,10 +14,6 @@ namespace {
 /// share of the margin. Otherwise piles would not come to rest: a new point begins without impulse.
 constexpr double kKeptArea = 0.8, kKeptDepth = 1.0 / 8;
 
-std::int32_t corner_feature(std::uint32_t number) { return static_cast<std::int32_t>(3 * number); }
-std::int32_t edge_feature(std::uint32_t number) { return static_cast<std::int32_t>(3 * number + 1); }
-std::int32_t face_feature(std::uint32_t number) { return static_cast<std::int32_t>(3 * number + 2); }
-
 /// Corner of a polygon that is being clipped, in the frame of the hull whose face clips it.
 struct ClipPoint {
   btVector3 p;
@@ -36,17 +32,6 @@ struct ClipSpace {
 ClipSpace& clip_space_of_this_thread() {
   thread_local ClipSpace space;
   return space;
-}
-
-/// The face at the hull's farthest corner against `normal` that faces it most.
-std::uint32_t opposite_face(const HullFaces& hull, const btVector3& normal) {
-  const std::size_t corner = hull.corners.farthest(-normal);
-  std::uint32_t best = hull.corner_faces[hull.corner_begin[corner]];
-  for (std::uint32_t i = hull.corner_begin[corner]; i < hull.corner_begin[corner + 1]; ++i) {
-    const std::uint32_t face = hull.corner_faces[i];
-    if (normal.dot(hull.normals[face]) < normal.dot(hull.normals[best])) best = face;
-  }
-  return best;
 }
 
 /// A face of one hull that clips one of the other.
@@ -243,12 +228,27 @@ HullPoints contact_points(const HullFaces& a, const HullFaces& b, const btTransf
       point.on_a = X_AB(point.on_a), point.on_b = X_AB(point.on_b);
     }
   }
-  if (points.size() > result.points.size()) {
-    reduce(points, margin_m, before, result);
-  } else {
-    for (const HullPoint& point : points) result.points[static_cast<std::size_t>(result.count++)] = point;
-  }
+  choose_points(points, margin_m, before, result);
   return result;
+}
+
+void choose_points(std::span<const HullPoint> points, double margin_m, std::span<const ContactFeatures> before,
+                   HullPoints& to) {
+  if (points.size() > to.points.size()) {
+    reduce(points, margin_m, before, to);
+  } else {
+    for (const HullPoint& point : points) to.points[static_cast<std::size_t>(to.count++)] = point;
+  }
+}
+
+std::uint32_t opposite_face(const HullFaces& hull, const btVector3& normal) {
+  const std::size_t corner = hull.corners.farthest(-normal);
+  std::uint32_t best = hull.corner_faces[hull.corner_begin[corner]];
+  for (std::uint32_t i = hull.corner_begin[corner]; i < hull.corner_begin[corner + 1]; ++i) {
+    const std::uint32_t face = hull.corner_faces[i];
+    if (normal.dot(hull.normals[face]) < normal.dot(hull.normals[best])) best = face;
+  }
+  return best;
 }
 
 }  // namespace aurasim::physics
