@@ -35,6 +35,9 @@ constexpr btScalar kLongWay_m = btScalar(0.005);
 /// Contacts ahead of time are computed at a pose where the bodies overlap by this, m.
 constexpr btScalar kOverlap_m = btScalar(0.002);
 
+/// Bounds are prefetched so many pairs ahead.
+constexpr int kBoundsDistance = 24;
+
 const btCollisionObject& body_of(const btBroadphaseProxy& proxy) {
   return *static_cast<const btCollisionObject*>(proxy.m_clientObject);
 }
@@ -169,13 +172,21 @@ void SoftContacts::look(List& list, btOverlappingPairCache& pairs, int first, in
   btBroadphasePairArray& all = pairs.getOverlappingPairArray();
   const bool knows_sleepers = islands_.knows_sleepers();
   const auto both_sleep = [this](const PairNote& of) { return islands_.sleeps(of.a) && islands_.sleeps(of.b()); };
+  const auto is_apart = [&](const btBroadphasePair& pair, const PairNote& note) {
+    return pair.m_algorithm == nullptr && bounds_.are_apart(note.a, note.b());
+  };
   const auto is_wanted = [&](int i) {
     if (i >= last) return false;
     const PairNote note = noted(all[i]);
+    if (note.is_known() && is_apart(all[i], note)) return false;
     return !note.is_known() || (note.may_touch() && !(knows_sleepers && both_sleep(note)));
   };
   for (int i = first; i < last; ++i) {
     core::Progress::mark_now_and_then(static_cast<std::size_t>(i));
+    if (i + kBoundsDistance < last) {
+      const PairNote later = noted(all[i + kBoundsDistance]);
+      bounds_.prefetch(later.a), bounds_.prefetch(later.b());
+    }
     if (is_wanted(i + kPrefetchDistance)) prefetch_pair(all[i + kPrefetchDistance]);
     if (is_wanted(i + kPrefetchDistance / 2) && boxes_overlap(all[i + kPrefetchDistance / 2])) {
       prefetch_parts(all[i + kPrefetchDistance / 2], list.manifolds);
@@ -185,7 +196,7 @@ void SoftContacts::look(List& list, btOverlappingPairCache& pairs, int first, in
       for (int k = 0; k < manifolds.size(); ++k) prefetch_points(*manifolds[k]);
     }
     const PairNote note = note_of(all[i]);
-    if (!note.may_touch()) continue;
+    if (!note.may_touch() || is_apart(all[i], note)) continue;
     if (both_sleep(note)) {  // touches of sleepers are unchanged
       if (!knows_sleepers && touch(all[i], list.manifolds)) list.touches_of_sleepers.push_back({note.a, note.b()});
       continue;

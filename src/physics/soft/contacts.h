@@ -11,6 +11,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 
 #include "physics/soft/ahead.h"
+#include "physics/soft/near_bounds.h"
 #include "physics/soft/threads.h"
 #include "physics/soft/touch.h"
 
@@ -40,6 +41,9 @@ class SoftContacts {
         islands_(islands),
         first_contacts_(first_contacts),
         lists_(static_cast<std::size_t>(team.size())) {}
+
+  /// Bounds of the bodies that are awake in the next look(). Those of others need not be known.
+  NearBounds& bounds() { return bounds_; }
 
   /// Finds the contacts of all pairs with an awake body. Pairs of sleepers are skipped if their islands are known.
   void look(btOverlappingPairCache& pairs, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info,
@@ -101,6 +105,7 @@ class SoftContacts {
   /// Reads the patches of a touch. `shift`: how far body0 was moved towards body1 to find the touch.
   void read(List& list, SoftTouch& touch, const btVector3& shift);
 
+  NearBounds bounds_;
   btScalar step_s_;
   bool looks_ahead_;
   soft::Team& team_;
