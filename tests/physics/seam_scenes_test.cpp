@@ -1,6 +1,7 @@
 // Piles on edges and corners of blocks, beside the same in one block.
 #include <algorithm>
 #include <iostream>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,7 @@ struct Errors {
 class SeamScenes : public ::testing::TestWithParam<Spot> {
  protected:
   /// A box with its place in a scene around the spot.
-  void place_box(const Vec3& half, const Vec3& p) {
+  void place_box(const Vec3& half, const Vec3& p, const core::Quat& q = core::Quat::Identity()) {
     const auto known = std::ranges::find(halves_, half) - halves_.begin();
     if (known == std::ssize(halves_)) {
       halves_.push_back(half);
@@ -43,7 +44,7 @@ class SeamScenes : public ::testing::TestWithParam<Spot> {
     core::InitialBody& body = scene.bodies.emplace_back();
     body.id = core::BodyId{scene.bodies.size() - 1};
     body.prototype = core::PrototypeId{static_cast<std::uint32_t>(known)};
-    body.pose.p_WB = GetParam().p + p;
+    body.pose = {GetParam().p + p, q};
   }
 
   Errors run_with(double side_m) {
@@ -87,7 +88,7 @@ class SeamScenes : public ::testing::TestWithParam<Spot> {
               << " in " << blocks_.size() << "; moved " << 1000 * one.moved_m << ", " << 1000 * many.moved_m << '\n';
     EXPECT_LT(many.moved_m, 0.05);
     EXPECT_LT(many.sunk_m, 1.3 * one.sunk_m + 0.001);
-    EXPECT_LT(many.moved_m, 1.5 * one.moved_m + 0.005);
+    EXPECT_LT(many.moved_m, 1.5 * one.moved_m + 0.01);
   }
 
   core::Scene scene;
@@ -115,6 +116,41 @@ TEST_P(SeamScenes, APyramidStands) {
     }
   }
   expect_stands(2);
+}
+
+/// Three storeys of cards, as in the laboratory (lab/stability/piles.cpp).
+TEST_P(SeamScenes, ACardHouseStands) {
+  constexpr double kThick = 0.03, kSpan = 0.681, kHalfFoot = 0.161, kOverhang = 0.15, kGap = 0.0005;
+  const double lean = 17 * std::numbers::pi / 180;
+  const double up = std::cos(lean) + kThick * std::sin(lean), storey = up + kThick + 2 * kGap;
+  scene.materials.resize(1);
+  scene.materials[0].friction = 0.9;
+  for (int level = 0; level < 3; ++level) {
+    const int pairs = 3 - level;
+    const auto ridge_x = [&](int i) { return kSpan * (i - (pairs - 1) / 2.0); };
+    for (int i = 0; i < pairs; ++i) {
+      for (const double side : {-1.0, 1.0}) {
+        place_box({kThick / 2, 0.35, 0.5}, {ridge_x(i) + side * kHalfFoot, 0, level * storey + up / 2},
+                  core::Quat(Eigen::AngleAxisd(-side * lean, Vec3::UnitY())));
+      }
+      if (i == 0) continue;
+      const double left = ridge_x(i - 1) + (i == 1 ? -kOverhang : 2 * kGap);
+      const double right = ridge_x(i) + (i == pairs - 1 ? kOverhang : -2 * kGap);
+      place_box({(right - left) / 2, 0.35, kThick / 2},
+                {(left + right) / 2, 0, level * storey + kGap + up + kThick / 2});
+    }
+  }
+  expect_stands(2);
+}
+
+/// A plate over 16 blocks, on pillars in all of them and on their edges.
+TEST_P(SeamScenes, AGiantPlateStandsOnPillars) {
+  for (int i = -2; i <= 2; ++i) {
+    for (int k = -2; k <= 2; ++k) place_box({0.4, 0.4, 0.5}, {7.0 * i, 7.0 * k, 0.5});
+  }
+  place_box({15, 15, 0.02}, {0, 0, 1.02});
+  for (int i = -1; i <= 1; ++i) place_box({0.4, 0.4, 0.4}, {7.0 * i, 0, 1.44});
+  expect_stands(12);
 }
 
 constexpr double kIn = 3 * kSide / 2;  // the middle of a block
