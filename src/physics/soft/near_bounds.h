@@ -1,8 +1,8 @@
-// The bounds of awake bodies by slot, rounded outwards, in 32 octets each. Most pairs of near bodies are apart, and
-// these bounds show it without a look at the broadphase's objects, which are scattered in memory.
+// The bounds of awake bodies by slot, rounded, in 32 octets each. Most pairs of near bodies are apart, and these bounds
+// show it without a look at the broadphase's objects, which are scattered in memory. Rounding keeps the order of two
+// numbers, so bounds that overlap do so rounded, too.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -22,7 +22,7 @@ class NearBounds {
   void note(std::uint32_t slot, const Bounds& bounds) {
     Entry& entry = entries_[slot];
     for (int k = 0; k < 3; ++k) {
-      entry.low[k] = outwards(bounds.low[k], -1), entry.high[k] = outwards(bounds.high[k], 1);
+      entry.low[k] = static_cast<float>(bounds.low[k]), entry.high[k] = static_cast<float>(bounds.high[k]);
     }
     entry.step = now_;
   }
@@ -41,12 +41,6 @@ class NearBounds {
     float low[3] = {}, high[3] = {};
     std::uint32_t step = 0;
   };
-
-  /// Rounding to float is off by at most 2^-24 of the value.
-  static float outwards(btScalar value, float sign) {
-    const auto rounded = static_cast<float>(value);
-    return rounded + sign * std::abs(rounded) * 2.4e-7f;
-  }
 
   std::vector<Entry> entries_;
   std::uint32_t now_ = 0;
