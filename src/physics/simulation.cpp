@@ -34,7 +34,7 @@ btScalar half_thickness(const btCollisionShape& shape) {
 }
 
 /// A world of fewer bodies does not leave much memory behind.
-constexpr std::size_t kMany = 4096;
+constexpr std::size_t kManyBodies = 4096;
 
 constexpr std::uint64_t kRoomForStatics = 1U << 20U;
 
@@ -296,7 +296,7 @@ void Simulation::free_spare_memory() {
   core::free_memory(touched_, unsorted_contacts_, contacts_before_, copied_contacts_, found_contacts_, collisions_);
   moved_.shrink_to_fit(), moved_contacts_.shrink_to_fit();
   snapshot_.changed.shrink_to_fit(), snapshot_.changed_contacts.shrink_to_fit();
-  if (table_.size() > kMany) give_memory_back();
+  if (table_.size() > kManyBodies) give_memory_back();
 }
 
 /// Sorts places in the table, without duplicates. Uses marks for many, because that takes no comparisons.

@@ -177,7 +177,7 @@ class Sprayer {
 
 struct Arguments {
   std::uint64_t count = 200'000, seed = 1;
-  std::optional<std::uint32_t> domain;  ///< of others
+  std::optional<std::uint32_t> domain;        ///< of others
   std::optional<std::uint32_t> heard_domain;  ///< of a newcomer
   std::string keep;
 };
@@ -230,8 +230,8 @@ bool hears(std::uint32_t domain) {
   });
 }
 
-/// A process of its own. The participants of this one have ids that differ in one octet: a changed announcement may have
-/// taken the next one's, and then nobody listens to the real one, as in every run without keys.
+/// A process of its own. The participants of this one have ids that differ in one octet: a changed announcement may
+/// have taken the next one's, and then nobody listens to the real one, as in every run without keys.
 bool newcomer_hears(const std::string& own_program, std::uint32_t domain) {
   Target newcomer(own_program, {"--newcomer", std::to_string(domain)});
   holds_in_time([&] { return newcomer.ended().has_value(); });
@@ -302,7 +302,8 @@ int against_own_target(const Arguments& arguments) {
   target.silence();
   std::this_thread::sleep_for(1s);
   if (target.silence() > kLongestSilence) return fail(arguments, target, kept, "the target says nothing");
-  if (!newcomer_hears(own_program, domain.number())) return fail(arguments, target, kept, "a newcomer does not hear it");
+  if (!newcomer_hears(own_program, domain.number()))
+    return fail(arguments, target, kept, "a newcomer does not hear it");
   target.ask_to_end();
   if (!holds_in_time([&] { return target.ended().has_value(); }) || target.ended() != 0) {
     return fail(arguments, target, kept, "it does not end as it should");

@@ -164,13 +164,13 @@ class SoftWorld final : public World {
     lists_.resize(static_cast<std::size_t>(team_.size()));
     for (List& list : lists_) list.outside.clear();  // also of threads that have nothing to do in this step
     const std::span<btRigidBody* const> awake = islands_.awake();
-    contacts_.bounds().begin(islands_.slots());
+    contacts_->bounds().begin(islands_.slots());
     team_.side_by_side([&](const soft::Worker& worker) {
       std::vector<Bounded>& outside = lists_[static_cast<std::size_t>(worker.number)].outside;
       const auto [first, last] = worker.share(awake.size());
       for (std::size_t i = first; i < last; ++i) {
         const Bounds bounds = bounds_ahead(*awake[i]);
-        contacts_.bounds().note(slot_of(*awake[i]), bounds);
+        contacts_->bounds().note(slot_of(*awake[i]), bounds);
         btBroadphaseProxy* const proxy = awake[i]->getBroadphaseHandle();
         if (!Broadphase::keep_in_box(*proxy, bounds.low, bounds.high)) outside.push_back({proxy, bounds});
       }
