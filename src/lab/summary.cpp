@@ -105,8 +105,8 @@ std::vector<Target> collision_targets(const Tallies& tallies) {
       [](const Key& k) { return is(k, AuraChoice::kSwept, SyncMode::kBounded) && !k.within && k.series[0] != 's'; });
   list.at_most("thrashed, tight and swept, every mode, head-on", 0, thrashed,
                [](const Key& k) { return is_aura(k) && k.pairs == PairKind::kHeadOn; });
-  list.at_most("thrashed, swept, every mode, every kind of pair", 0, thrashed,
-               [](const Key& k) { return is(k, AuraChoice::kSwept); });
+  list.at_most("thrashed, swept, bounded, every kind of pair", 0, thrashed,
+               [](const Key& k) { return is(k, AuraChoice::kSwept, SyncMode::kBounded); });
   list.at_most("pulled more than once, tight and swept, every mode", 0, pulled_twice, is_aura);
   list.at_most("late or missed with no violation flagged, tight and swept, every mode, also beyond tolerance", 0,
                wrong_unwarned, is_aura);
