@@ -52,7 +52,23 @@ class BrokenStep : public testing::Test {
     return cluster.node(core::value_of(region)).current_step() > *before_;
   }
 
+  /// Lets a region die when it has posted so many parcels of the step, and looks where each body is then. Whether the
+  /// old host and the new one have the next state.
+  std::pair<bool, bool> end_by_death(core::RegionId dies, std::size_t parcels) {
+    const std::unique_ptr<VirtualCluster> cluster = cluster_before_a_move();
+    const std::map<core::BodyId, int> before = hosts(*cluster, dies);
+    cluster->crash_in_step(dies, parcels);
+    std::map<core::BodyId, int> after = hosts(*cluster, dies);
+    for (const auto& [body, count] : before) {
+      EXPECT_TRUE(after.contains(body)) << core::value_of(body) << " is lost after " << parcels << " parcels";
+      EXPECT_LE(after[body], 1) << core::value_of(body) << " is doubled after " << parcels << " parcels";
+    }
+    dead_has_state_ = has_state(*cluster, dies);
+    return {has_state(*cluster, source_), has_state(*cluster, destination_)};
+  }
+
   core::RegionId source_{}, destination_{};
+  bool dead_has_state_ = false;  ///< it has posted all parcels, and died after the step
 
  private:
   core::Step state_before_a_move() {
@@ -74,22 +90,17 @@ class BrokenStep : public testing::Test {
   std::optional<core::Step> before_;
 };
 
-/// A third region dies. The old host, the new one, both or neither have the next state then.
+/// A third region dies. The old host, the new one, both or neither have the next state then, depending on which thread
+/// comes first. So it dies again until the hard end was among them: only the old host has it.
 TEST_F(BrokenStep, ABodyThatChangesHostsIsNeitherLostNorDoubled) {
+  constexpr int kMostRounds = 30;  // half of them or more have it
   std::set<std::pair<bool, bool>> ends;
-  for (const core::RegionId dies : others()) {
-    bool has_ended = false;
-    for (std::size_t parcels = 0; !has_ended; ++parcels) {
-      const std::unique_ptr<VirtualCluster> cluster = cluster_before_a_move();
-      const std::map<core::BodyId, int> before = hosts(*cluster, dies);
-      cluster->crash_in_step(dies, parcels);
-      std::map<core::BodyId, int> after = hosts(*cluster, dies);
-      for (const auto& [body, count] : before) {
-        EXPECT_TRUE(after.contains(body)) << core::value_of(body) << " is lost after " << parcels << " parcels";
-        EXPECT_LE(after[body], 1) << core::value_of(body) << " is doubled after " << parcels << " parcels";
-      }
-      ends.insert({has_state(*cluster, source_), has_state(*cluster, destination_)});
-      has_ended = has_state(*cluster, dies);
+  for (int round = 0; round < kMostRounds && !ends.contains({true, false}); ++round) {
+    for (const core::RegionId dies : others()) {
+      std::size_t parcels = 0;
+      do {
+        ends.insert(end_by_death(dies, parcels++));
+      } while (!dead_has_state_);
     }
   }
   EXPECT_TRUE(ends.contains({true, false})) << "none of these ends is hard";
