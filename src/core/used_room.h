@@ -23,7 +23,7 @@ class UsedRoom {
     return spare;
   }
 
-  /// It takes so many steps until memory counts as spare.
+  /// Memory counts as spare only after so many steps.
   static constexpr int kSteps = 128;
   /// Room for so many items is never spare.
   static constexpr std::size_t kFew = 256;

@@ -24,7 +24,7 @@ class BlockPool {
   BlockPool(const BlockPool&) = delete;
   BlockPool& operator=(const BlockPool&) = delete;
 
-  /// Of an object, at most.
+  /// The largest size of an object, bytes.
   std::size_t bytes() const { return bytes_ - sizeof(Block); }
 
   void* take() {

@@ -21,7 +21,7 @@ namespace aurasim::physics {
 /// Bodies are named by their slots (soft/islands.h); a static has slot 0. Several threads may ask at the same time.
 class SleepingPairs {
  public:
-  /// Of a pair that is taken out.
+  /// A pair as it is taken out.
   struct Pair {
     btBroadphaseProxy *proxy0 = nullptr, *proxy1 = nullptr;
     std::unique_ptr<std::uint8_t[]> contacts;  ///< null: they do not touch

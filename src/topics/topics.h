@@ -92,7 +92,7 @@ std::string in_later_lives(const std::string& partition);
 /// to all: they are published in to_hub(partition), and the hub publishes them in the partition itself.
 bool goes_by_hub(TopicId topic, std::string_view partition);
 std::string to_hub(std::string_view partition);
-/// What the names of all partitions that the hub reads begin with, and the pattern of all of them.
+/// The hub reads partitions whose names begin with kToHub; kEveryPartitionToHub is the pattern of all of them.
 inline constexpr std::string_view kToHub = "hub/";
 inline constexpr const char* kEveryPartitionToHub = "hub/*";
 

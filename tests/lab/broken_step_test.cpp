@@ -1,4 +1,4 @@
-// What the records say of bodies when a coupled run ends in the middle of a step.
+// The records have each body once when a coupled run ends in the middle of a step.
 #include <filesystem>
 #include <map>
 #include <memory>

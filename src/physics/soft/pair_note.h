@@ -1,4 +1,4 @@
-// What the soft step notes in a pair of near objects.
+// The soft step notes this in a pair of near objects.
 #pragma once
 
 #include <bit>
