@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <memory>
 #include <stdexcept>
 #include <thread>
@@ -8,6 +7,7 @@
 
 #include "cli/commands.h"
 #include "command_line/leave.h"
+#include "config/launch_checks.h"
 #include "cut/kept_on_disk.h"
 #include "cut/part_writer.h"
 #include "host/host_room.h"
@@ -68,9 +68,8 @@ void look_at_keys(const config::Launch& launch) {
 
 /// Gives a run of many nodes on this host a hub, unless the launch file says how they find each other.
 config::Launch with_hub(config::Launch launch, command_line::FileArguments& files) {
-  const auto is_loopback = [](const std::string& address) { return address.starts_with("127."); };
   if (launch.dds.discovery != config::Discovery::kAuto || launch.regions.size() <= config::kMostNodesWithoutHub ||
-      !launch.dds.security.empty() || !std::ranges::all_of(launch.dds.interfaces, is_loopback)) {
+      !launch.dds.security.empty() || !config::is_on_loopback(launch.dds)) {
     return launch;
   }
   files.overrides.emplace_back("dds.discovery=neighbours");

@@ -58,8 +58,7 @@ void check_each(const Field& list, std::string_view allowed, bool (*is_good)(con
 void check_neighbours(const Field& field, const Dds& dds) {
   if (dds.discovery != Discovery::kNeighbours) return;
   const Fields fields(field);
-  const auto is_loopback = [](const std::string& address) { return address.starts_with("127."); };
-  if (!std::ranges::all_of(dds.interfaces, is_loopback)) {
+  if (!is_on_loopback(dds)) {
     fields["interfaces"].refuse(
         "addresses of loopback with discovery: neighbours, which is for one host only; on several hosts use multicast, "
         "peers or server");

@@ -152,6 +152,10 @@ void settle_auto(Launch& launch) {
 
 }  // namespace
 
+bool is_on_loopback(const Dds& dds) {
+  return std::ranges::all_of(dds.interfaces, [](const std::string& address) { return address.starts_with("127."); });
+}
+
 std::string why_not_coupled(const Launch& launch) {
   const std::vector<ProblemOfCoupled> problems = problems_of_coupled(launch);
   return problems.empty() ? std::string() : problems.front().why;

@@ -20,6 +20,9 @@ double reach_m(const Launch& launch);
 /// Largest distance from a region at which another region's node may need its auras. Metres.
 double zone_m(const Launch& launch);
 
+/// True if all addresses that may carry traffic are of loopback, so that a hub can be there.
+bool is_on_loopback(const Dds& dds);
+
 /// Why the regions of this launch cannot be coupled; empty: they can be.
 std::string why_not_coupled(const Launch& launch);
 

@@ -87,8 +87,7 @@ Domain::Domain(const Settings& settings)
   has_keys_ = settings.keys.has_value();
   if (has_keys_) make_room_for_handshakes(qos);
   loopback_only_ = on_loopback_only(qos);
-  hears_hubs_ = speaks_by_hub_ ||
-                (settings.discovery == config::Discovery::kAuto && loopback_only_ && !settings.keys.has_value());
+  hears_hubs_ = speaks_by_hub_ || (settings.discovery == config::Discovery::kAuto && loopback_only_ && !has_keys_);
   believes_silence_ = settings.believes_silence || !loopback_only_;
   if (!believes_silence_) be_patient_with_this(qos);
   // A discovery server has to be asked again until it answers.

@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "physics/bullet_convert.h"
 #include "physics/cylinder_faces.h"
 #include "physics/static_floors.h"
 #include "physics/two_cylinders.h"
@@ -24,8 +25,7 @@ constexpr double kCylinderMargin = 0.02;
 /// Points whose gaps differ by less may be chosen for each other.
 constexpr double kSameGap = kCylinderMargin / 40;
 
-Vec3 eigen(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
-btVector3 bullet(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+btVector3 bullet(const Vec3& v) { return to_bullet(v); }
 
 std::span<const HullPoint> all(const HullPoints& found) {
   return std::span(found.points).first(static_cast<std::size_t>(found.count));
@@ -134,8 +134,8 @@ TEST(CylinderContacts, PointsOnABoxLieOnBothBodies) {
       ASSERT_LE(point.gap, kCylinderMargin);
       ASSERT_NEAR((point.on_a - point.on_b).dot(up), point.gap, 1e-9);
       ASSERT_LT(outside_of(cylinder, point.on_a), 1e-9);
-      ASSERT_LT((eigen(point.on_b).cwiseAbs() - half).maxCoeff(), 1e-9);
-      ASSERT_GT((eigen(point.on_b).cwiseAbs() - half).maxCoeff(), -1e-9);
+      ASSERT_LT((from_bullet(point.on_b).cwiseAbs() - half).maxCoeff(), 1e-9);
+      ASSERT_GT((from_bullet(point.on_b).cwiseAbs() - half).maxCoeff(), -1e-9);
     }
     ASSERT_EQ(names.size(), static_cast<std::size_t>(found.count)) << "two points have one name";
     full += found.count == 4;

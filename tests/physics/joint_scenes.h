@@ -103,4 +103,15 @@ inline std::vector<core::BodyId> place_machine(core::Scene& scene, double x) {
   return ids;
 }
 
+/// Piles of all shapes with joints in them, which come to rest, some of them next to each other.
+inline std::vector<core::BodyRecord> piles_of_all_shapes(core::Scene& scene, std::mt19937_64& random) {
+  for (int i = 0; i < 60; ++i) {
+    const core::Vec3 p(3 * (i % 5) + uniform(random, -1, 1), 3 * (i / 5 % 3) + uniform(random, -1, 1), 1 + i / 5);
+    place_body(scene, i % kKinds, p);
+    const auto id = static_cast<std::uint64_t>(i);
+    if (i % 12 == 11) add_joint(scene, core::BallJoint{}, id - 5, id, p - core::Vec3(0.5, 0, 0));
+  }
+  return initial_records(scene);
+}
+
 }  // namespace aurasim::physics::testing

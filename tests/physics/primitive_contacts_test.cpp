@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "physics/bullet_convert.h"
 #include "physics/plane_points.h"
 #include "physics/rod_points.h"
 #include "physics/scenes.h"
@@ -23,8 +24,7 @@ constexpr double kMargin = 0.02;
 /// Points whose gaps differ by less may be chosen for each other.
 constexpr double kEqual = kMargin / 40;
 
-Vec3 from(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
-btVector3 vector(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+btVector3 vector(const Vec3& v) { return to_bullet(v); }
 
 Vec3 random_vector(std::mt19937_64& random, double half) {
   const double x = uniform(random, -half, half), y = uniform(random, -half, half);
@@ -97,7 +97,7 @@ double outside_of_box(const Vec3& p, const Vec3& half_extents) {
 }
 
 double gap_to_box(const Rod& rod, const Vec3& half_extents) {
-  return least([&](double t) { return outside_of_box(from(rod.at(t)), half_extents); }) - rod.radius;
+  return least([&](double t) { return outside_of_box(from_bullet(rod.at(t)), half_extents); }) - rod.radius;
 }
 
 TEST(PrimitiveContacts, RodsAreAsFarApartAsASlowSearchFinds) {
@@ -121,7 +121,7 @@ TEST(PrimitiveContacts, RodsAreAsFarApartAsASlowSearchFinds) {
     ASSERT_NEAR(deepest(found), gap, kEqual + 1e-6);
     ASSERT_GE(deepest(found), gap - 1e-6);
     for (const RodPoint& point : all(found)) {
-      ASSERT_NEAR(from(point.normal).norm(), 1, 1e-9);
+      ASSERT_NEAR(from_bullet(point.normal).norm(), 1, 1e-9);
       ASSERT_LE(point.gap, kMargin);
       const btVector3 on_rod = point.on_other + point.normal * point.gap;
       ASSERT_LT(distance_from_segment(point.on_other, other), other.radius + 1e-6);
@@ -147,7 +147,7 @@ TEST(PrimitiveContacts, TheOtherWayRoundRodsHaveTheSameNearestPoint) {
     ASSERT_GT(one.count, 0);
     ASSERT_NEAR(deepest(one), deepest(turned), kEqual + 1e-9);
     if (one.count != 1 || turned.count != 1) continue;
-    ASSERT_LT((from(one.points[0].normal) + from(turned.points[0].normal)).norm(), 1e-4);
+    ASSERT_LT((from_bullet(one.points[0].normal) + from_bullet(turned.points[0].normal)).norm(), 1e-4);
   }
 }
 
@@ -175,14 +175,14 @@ TEST(PrimitiveContacts, ARodIsAsFarFromABoxAsASlowSearchFinds) {
     std::set<std::pair<int, int>> features;
     for (const RodPoint& point : all(found)) {
       features.emplace(point.features.of_a, point.features.of_b);
-      edges += from(point.normal).cwiseAbs().maxCoeff() < 0.999;
-      ASSERT_NEAR(from(point.normal).norm(), 1, 1e-9);
+      edges += from_bullet(point.normal).cwiseAbs().maxCoeff() < 0.999;
+      ASSERT_NEAR(from_bullet(point.normal).norm(), 1, 1e-9);
       ASSERT_LE(point.gap, kMargin);
-      ASSERT_LT(outside_of_box(from(point.on_other), half_extents), 1e-9);
-      ASSERT_GT((from(point.on_other).cwiseAbs() - half_extents).maxCoeff(), -1e-9) << "it is inside of the box";
+      ASSERT_LT(outside_of_box(from_bullet(point.on_other), half_extents), 1e-9);
+      ASSERT_GT((from_bullet(point.on_other).cwiseAbs() - half_extents).maxCoeff(), -1e-9) << "it is inside of the box";
       const btVector3 on_segment = point.on_other + point.normal * (point.gap + rod.radius);
       ASSERT_LT(distance_from_segment(on_segment, rod), 1e-6);
-      ASSERT_NEAR(outside_of_box(from(on_segment), half_extents), point.gap + rod.radius, 1e-6);
+      ASSERT_NEAR(outside_of_box(from_bullet(on_segment), half_extents), point.gap + rod.radius, 1e-6);
     }
     ASSERT_EQ(features.size(), static_cast<std::size_t>(found.count)) << "two points have the same features";
   }
@@ -212,7 +212,7 @@ TEST(PrimitiveContacts, ARodInABoxLeavesItOnTheShortestWay) {
     const RodPoint& point = *std::ranges::min_element(all(found), {}, &RodPoint::gap);
     const double depth = -point.gap - rod.radius;  // of the segment
     ASSERT_GE(depth, -1e-6);
-    const Vec3 out = from(point.normal);
+    const Vec3 out = from_bullet(point.normal);
     ASSERT_GT(gap_to_box(moved(out * (depth + kEqual + 1e-4)), half_extents), -rod.radius) << "it still is inside";
     (out.cwiseAbs().maxCoeff() > 0.99999 ? faces : edges) += 1;
     for (int k = 0; k < 200; ++k) {
@@ -288,7 +288,7 @@ TEST(PrimitiveContacts, AxesThatMeetHaveANormalAllTheSame) {
     const RodPoints found = rod_points(one, other, kMargin);
     ASSERT_GT(found.count, 0);
     for (const RodPoint& point : all(found)) {
-      EXPECT_NEAR(from(point.normal).norm(), 1, 1e-12);
+      EXPECT_NEAR(from_bullet(point.normal).norm(), 1, 1e-12);
       EXPECT_NEAR(point.gap, -0.5, 1e-9);
       EXPECT_NEAR(point.normal.dot(one.half), 0, 1e-9);
       EXPECT_NEAR(point.normal.dot(other.half), 0, 1e-9);

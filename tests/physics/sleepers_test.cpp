@@ -18,17 +18,6 @@ Settings settings(double block_m = core::kUsualBlock_m) {
   return settings;
 }
 
-/// Piles of all shapes with joints in them, which come to rest, some of them next to each other.
-std::vector<core::BodyRecord> piles(core::Scene& scene, std::mt19937_64& random) {
-  for (int i = 0; i < 60; ++i) {
-    const core::Vec3 p(3 * (i % 5) + uniform(random, -1, 1), 3 * (i / 5 % 3) + uniform(random, -1, 1), 1 + i / 5);
-    place_body(scene, i % kKinds, p);
-    const auto id = static_cast<std::uint64_t>(i);
-    if (i % 12 == 11) add_joint(scene, core::BallJoint{}, id - 5, id, p - core::Vec3(0.5, 0, 0));
-  }
-  return initial_records(scene);
-}
-
 /// A step with a sleeper that comes and goes, far from all others: what is known of sleepers has to be found out anew.
 void step_and_forget(RegionWorld& world) {
   core::BodyRecord stranger = body(1'000'000, kBox, {1000, 1000, 0.5});
@@ -50,7 +39,7 @@ TEST(Sleepers, WhatIsRememberedOfThemNeverShows) {
   for (int seed = 0; seed < 30; ++seed) {
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     core::Scene scene = scene_of_all_shapes();
-    const std::vector<core::BodyRecord> bodies = piles(scene, random);
+    const std::vector<core::BodyRecord> bodies = piles_of_all_shapes(scene, random);
     const Settings with = settings(seed % 2 == 0 ? core::kUsualBlock_m : 2);
     RegionWorld remembers(scene, with), forgets(scene, with);
     for (RegionWorld* world : {&remembers, &forgets}) world->add(bodies);

@@ -84,24 +84,13 @@ TEST(PackedContacts, EveryBitComesBack) {
   }
 }
 
-/// Piles of all shapes with joints in them, some of them next to each other.
-std::vector<core::BodyRecord> heaps(core::Scene& scene, std::mt19937_64& random) {
-  for (int i = 0; i < 60; ++i) {
-    const core::Vec3 p(3 * (i % 5) + uniform(random, -1, 1), 3 * (i / 5 % 3) + uniform(random, -1, 1), 1 + i / 5);
-    place_body(scene, i % kKinds, p);
-    const auto id = static_cast<std::uint64_t>(i);
-    if (i % 12 == 11) add_joint(scene, core::BallJoint{}, id - 5, id, p - core::Vec3(0.5, 0, 0));
-  }
-  return initial_records(scene);
-}
-
 /// In a world that is put back in each state, no pair has slept for long enough to be packed. Such a world reports some
 /// collisions twice, so they are not compared.
 TEST(SleepingPairs, ThatArePackedGoOnAsIfTheyWereNot) {
   for (int seed = 0; seed < 8; ++seed) {
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     core::Scene scene = scene_of_all_shapes(seed % 2 == 0 ? Ground::kPlane : Ground::kMesh);
-    const std::vector<core::BodyRecord> bodies = heaps(scene, random);
+    const std::vector<core::BodyRecord> bodies = piles_of_all_shapes(scene, random);
     Settings settings;
     settings.solver = Solver::kSoftStep;
     settings.continuous = true;
