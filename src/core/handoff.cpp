@@ -10,13 +10,8 @@ const HandOff& DepartureLedger::record(HandOff hand_off) {
   return open_.back();
 }
 
-bool DepartureLedger::acknowledge(RegionId destination, std::uint64_t sequence) {
-  const auto found = std::find_if(open_.begin(), open_.end(), [&](const HandOff& h) {
-    return h.destination == destination && h.sequence == sequence;
-  });
-  if (found == open_.end()) return false;
-  open_.erase(found);
-  return true;
+void DepartureLedger::acknowledge(RegionId destination, std::uint64_t last_sequence) {
+  std::erase_if(open_, [&](const HandOff& h) { return h.destination == destination && h.sequence <= last_sequence; });
 }
 
 void DepartureLedger::due_again(Step now, Step patience, std::vector<HandOff>& out) const {
@@ -43,6 +38,14 @@ bool ArrivalLedger::first_copy(RegionId source, std::uint64_t sequence) {
 bool ArrivalLedger::has_all_up_to(RegionId source, std::uint64_t sequence) const {
   const auto found = streams_.find(source);
   return sequence <= (found == streams_.end() ? 0 : found->second.contiguous);
+}
+
+std::vector<HandOffMark> ArrivalLedger::all_arrived() const {
+  std::vector<HandOffMark> marks;
+  for (const auto& [source, stream] : streams_) {
+    if (stream.contiguous > 0) marks.push_back({source, stream.contiguous});
+  }
+  return marks;
 }
 
 }  // namespace aurasim::core

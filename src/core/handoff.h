@@ -12,14 +12,14 @@
 
 namespace aurasim::core {
 
-/// The sender's side: keeps every hand-off until it is acknowledged.
+/// The sender's side: keeps every hand-off until its receiver says that it has adopted it.
 class DepartureLedger {
  public:
   /// Numbers and keeps a hand-off; returns the kept copy.
   const HandOff& record(HandOff hand_off);
 
-  /// Forgets the hand-off. Returns false when none is open under that number (a second acknowledgement).
-  bool acknowledge(RegionId destination, std::uint64_t sequence);
+  /// Forgets the hand-offs to `destination` up to this number.
+  void acknowledge(RegionId destination, std::uint64_t last_sequence);
 
   /// Appends copies of the hand-offs that are due to be sent again: open for a multiple of `patience` steps.
   void due_again(Step now, Step patience, std::vector<HandOff>& out) const;
@@ -40,6 +40,9 @@ class ArrivalLedger {
 
   /// Have all hand-offs from `source` numbered up to `sequence` arrived?
   bool has_all_up_to(RegionId source, std::uint64_t sequence) const;
+
+  /// For each region from which hand-offs have arrived: the number up to which all have. Ascending.
+  std::vector<HandOffMark> all_arrived() const;
 
  private:
   struct Stream {

@@ -109,13 +109,10 @@ void Intake::accept(Inbox& inbox) {
     if (batch.stamp > neighbour.received() + kMostStatesAhead) {
       return accept(Refusal{batch.source, batch.generation, batch.stamp, MessageKind::kAura, "far ahead", batch.redo});
     }
+    note_adopted(batch);
     if (!neighbour.accept(std::move(batch), arrived_)) ++counters_.copies;
   });
   take_all(inbox.hand_offs, settings_, [this](HandOff& hand_off) { accept(hand_off); });
-  take_all(inbox.acks, settings_, [this](const HandOffAck& ack) {
-    if (ack.destination != vicinity_.self || !belongs(ack, map_version_)) return;
-    if (!departures_.acknowledge(ack.source, ack.sequence)) ++counters_.copies;
-  });
   take_all(inbox.refusals, settings_, [this](const Refusal& refusal) { accept(refusal); });
   for (const PeerEvent& event : inbox.peers) accept(event);
   inbox.peers.clear();
@@ -134,16 +131,15 @@ void Intake::accept(HandOff& hand_off) {
   }
   if (arrivals_.first_copy(hand_off.source, hand_off.sequence)) {
     waiting_.push_back(std::move(hand_off));
-    return;
+  } else {
+    ++counters_.copies;
   }
-  ++counters_.copies;
-  const bool waits = std::any_of(waiting_.begin(), waiting_.end(), [&](const HandOff& h) {
-    return h.source == hand_off.source && h.sequence == hand_off.sequence;
-  });
-  // A copy of a hand-off adopted earlier, whose acknowledgement was lost. One that still waits has not been adopted, so
-  // it is not acknowledged.
-  if (!waits) {
-    acks_.push_back({vicinity_.self, hand_off.source, settings_.generation, 0, hand_off.sequence, settings_.redo});
+}
+
+/// Forgets the hand-offs that the source of the batch has adopted. A batch that comes twice says nothing new.
+void Intake::note_adopted(const AuraBatch& batch) {
+  for (const HandOffMark& mark : batch.adopted) {
+    if (mark.region == vicinity_.self) departures_.acknowledge(batch.source, mark.last_sequence);
   }
 }
 
@@ -251,7 +247,6 @@ void Intake::adopt_due(Step limit, Step n, ViolationLog& violations) {
       violations.add(
           {ViolationKind::kLatency, n, due_end->source, {}, double(n - due_end->stamp), double(settings_.lookahead)});
     }
-    acks_.push_back({vicinity_.self, due_end->source, settings_.generation, n, due_end->sequence, settings_.redo});
     adopt(*due_end);
   }
   waiting_.erase(waiting_.begin(), due_end);
@@ -288,12 +283,15 @@ std::vector<Neighbour::Introduced> Intake::take_introductions() {
   return take_from(neighbours_, &Neighbour::take_introductions);
 }
 
-void Intake::fill(Outbox& outbox, Step stamp) {
-  for (HandOffAck& ack : acks_) {
-    ack.stamp = stamp;
-    outbox.acks.push_back(ack);
+std::vector<HandOffMark> Intake::adopted() const {
+  std::vector<HandOffMark> marks = arrivals_.all_arrived();
+  for (HandOffMark& mark : marks) {
+    for (const HandOff& waiting : waiting_) {
+      if (waiting.source == mark.region) mark.last_sequence = std::min(mark.last_sequence, waiting.sequence - 1);
+    }
   }
-  acks_.clear();
+  std::erase_if(marks, [](const HandOffMark& mark) { return mark.last_sequence == 0; });
+  return marks;
 }
 
 }  // namespace aurasim::core

@@ -93,8 +93,8 @@ class Intake {
   /// Makes `region` a neighbour, which publishes from its state `begin` on.
   void listen_to(RegionId region, Step begin);
 
-  /// Adds the acknowledgements that have become due to the step's outbox, each once.
-  void fill(Outbox& outbox, Step stamp);
+  /// The hand-offs that have been adopted, for the next batch.
+  std::vector<HandOffMark> adopted() const;
 
  private:
   Neighbour* find(RegionId id);
@@ -107,6 +107,7 @@ class Intake {
   bool is_early(const Message& message) const;
   void forget_early(Step before);
   void accept(HandOff& hand_off);
+  void note_adopted(const AuraBatch& batch);
   void accept(const Refusal& refusal);
   void accept(const PeerEvent& event);
   void mark_dead(Neighbour& neighbour);
@@ -124,7 +125,6 @@ class Intake {
   DepartureLedger& departures_;
   ArrivalLedger arrivals_;
   std::vector<HandOff> waiting_;  ///< received, not yet in effect
-  std::vector<HandOffAck> acks_;
   std::vector<Adoption> adoptions_;
   std::vector<Refusal> refusals_;
   IntakeCounters counters_;

@@ -7,7 +7,6 @@ const char* name_of(MessageKind kind) { return kind == MessageKind::kAura ? "aur
 void Inbox::clear() {
   auras.clear();
   hand_offs.clear();
-  acks.clear();
   refusals.clear();
   peers.clear();
 }
@@ -17,7 +16,6 @@ void Outbox::clear() {
   aura.deletes.clear();
   aura.hand_offs.clear();
   hand_offs.clear();
-  acks.clear();
 }
 
 }  // namespace aurasim::core

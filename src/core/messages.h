@@ -40,9 +40,9 @@ struct AuraRecord {
   Audience audience = kAllListeners;
 };
 
-/// Sequence number of the last hand-off sent to `destination` up to a batch's stamp.
+/// Number of a hand-off between the source of a batch and `region`. All earlier ones count, too.
 struct HandOffMark {
-  RegionId destination{};
+  RegionId region{};
   std::uint64_t last_sequence = 0;
 };
 
@@ -66,7 +66,8 @@ struct AuraBatch {
   std::uint64_t violations = 0;
   std::vector<AuraRecord> updates;
   std::vector<BodyId> deletes;
-  std::vector<HandOffMark> hand_offs;
+  std::vector<HandOffMark> hand_offs;       ///< sent by the source up to this state, where the last is of this state
+  std::vector<HandOffMark> adopted;         ///< sent to the source, and adopted up to this state
   std::vector<Order> orders;                ///< orders that the source received since its last batch, in sequence
   std::vector<Alarm> alarms;                ///< alarms that the source raised or received since its last batch
   std::vector<Introduction> introductions;  ///< regions that are to listen to each other, as of this state
@@ -91,16 +92,6 @@ struct HandOff {
   std::uint64_t sequence = 0;
   HandOffReason reason = HandOffReason::kAuraCollision;
   ClusterState cluster;  ///< each body's epoch is already the new one
-};
-
-/// Acknowledges a hand-off as adopted. Sent for every copy received. `source` is the region that adopted.
-struct HandOffAck {
-  RegionId source{};
-  RegionId destination{};
-  Generation generation = 0;
-  Step stamp = 0;
-  std::uint64_t sequence = 0;  ///< sequence of the hand-off that it acknowledges
-  std::uint32_t redo = 0;
 };
 
 enum class PeerChange : std::uint8_t { kLost, kJoined };
@@ -129,7 +120,6 @@ struct Refusal {
 struct Inbox {
   std::vector<AuraBatch> auras;
   std::vector<HandOff> hand_offs;
-  std::vector<HandOffAck> acks;
   std::vector<Refusal> refusals;
   std::vector<PeerEvent> peers;
 
@@ -143,7 +133,6 @@ struct Outbox {
   std::vector<RegionId> expected;   ///< regions that will soon be listeners
   AuraBatch aura;
   std::vector<HandOff> hand_offs;
-  std::vector<HandOffAck> acks;
 
   void clear();
 };

@@ -55,7 +55,7 @@ bool Neighbour::note_gathered(const AuraBatch& word) {
 
 void Neighbour::note_marks(const AuraBatch& batch) {
   for (const HandOffMark& mark : batch.hand_offs) {
-    if (mark.destination == self_) marks_.push_back({batch.stamp, mark.last_sequence});
+    if (mark.region == self_) marks_.push_back({batch.stamp, mark.last_sequence});
   }
 }
 

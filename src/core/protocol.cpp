@@ -190,7 +190,7 @@ void Protocol::fill_header() {
   std::sort(batch.updates.begin(), batch.updates.end(),
             [](const AuraRecord& a, const AuraRecord& b) { return a.id < b.id; });
   departures_.due_again(batch.stamp, settings_.resend_after_steps, outbox_.hand_offs);
-  intake_.fill(outbox_, batch.stamp);
+  batch.adopted = intake_.adopted();
   batch.orders = orders_.take_to_publish();
   batch.alarms = alarms_.take_to_publish();
   batch.past = std::exchange(past_, {});

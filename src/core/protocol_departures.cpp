@@ -163,7 +163,7 @@ void Protocol::hand_over(const Departure& departure, ClusterState cluster) {
   hand_off.cluster = std::move(cluster);
   const HandOff& kept = departures_.record(std::move(hand_off));
   outbox_.hand_offs.push_back(kept);
-  std::erase_if(outbox_.aura.hand_offs, [&](const HandOffMark& m) { return m.destination == kept.destination; });
+  std::erase_if(outbox_.aura.hand_offs, [&](const HandOffMark& m) { return m.region == kept.destination; });
   outbox_.aura.hand_offs.push_back({kept.destination, kept.sequence});
 }
 

@@ -54,12 +54,8 @@ bool is_our_own(messages::WireError error) {
   }
 }
 
-template <class WireMessage>
-constexpr std::optional<core::MessageKind> kind_of(const WireMessage&) {
-  if constexpr (std::is_same_v<WireMessage, wire::AuraBatch>) return core::MessageKind::kAura;
-  if constexpr (std::is_same_v<WireMessage, wire::Migration>) return core::MessageKind::kHandOff;
-  return {};  // a lost acknowledgement is asked for again
-}
+core::MessageKind kind_of(const wire::AuraBatch&) { return core::MessageKind::kAura; }
+core::MessageKind kind_of(const wire::Migration&) { return core::MessageKind::kHandOff; }
 
 messages::Expected expected_of(const TransportSettings& settings) {
   return {.map_version = settings.map_version,
@@ -110,7 +106,6 @@ struct DdsTransport::Impl {
   void take_peer_changes(std::vector<core::PeerEvent>& peers);
   void send_aura(const core::AuraBatch& batch);
   void send_hand_off(const core::HandOff& hand_off);
-  void send_ack(const core::HandOffAck& ack);
 
   TransportSettings settings;
   messages::Expected expected;
@@ -120,7 +115,6 @@ struct DdsTransport::Impl {
   std::optional<DdsSeams> seams;  ///< if regions are coupled
   wire::AuraBatch aura;           // reused for every sample
   wire::Migration migration;
-  wire::MigrationAck ack;
   TransportCounters counters;
   std::uint64_t seen_changes = 0;  ///< of the watches of aura readers, at the last look at peers
   std::chrono::steady_clock::time_point next_look_at_peers;
@@ -189,9 +183,9 @@ void DdsTransport::Impl::take_all(Reader& reader, WireMessage& sample, std::vect
     if (const auto* error = std::get_if<messages::WireError>(&decoded)) {
       topic.refused.add(*error);
       ++link->refused;
-      const auto kind = kind_of(sample);
-      if (!kind || !is_our_own(*error)) continue;
-      refusals.push_back({link->region, sample.generation(), sample.stamp(), *kind, name_of(*error), sample.redo()});
+      if (!is_our_own(*error)) continue;
+      refusals.push_back(
+          {link->region, sample.generation(), sample.stamp(), kind_of(sample), name_of(*error), sample.redo()});
     } else {
       messages.push_back(std::move(std::get<Message>(decoded)));
     }
@@ -219,19 +213,16 @@ void DdsTransport::Impl::wait_for(const std::vector<RegionId>& listeners) {
   }
 }
 
-/// Makes the writers to regions to which no such message has gone before, and waits until they are matched.
+/// Makes the writers to regions to which no hand-off has gone before, and waits until they are matched.
 void DdsTransport::Impl::make_writers_for(const core::Outbox& outbox) {
   std::vector<RegionId> fresh;
-  const auto prepare = [&](RegionId to, std::optional<Writer> Link::*writer, Writer& (Links::*make)(Link&)) {
-    Link* const link = links.find(to);
-    if (link == nullptr || link->lost || link->*writer) return;
-    (links.*make)(*link);
+  for (const auto& hand_off : outbox.hand_offs) {
+    Link* const link = links.find(hand_off.destination);
+    if (link == nullptr || link->lost || link->migration_writer) continue;
+    links.migrations_to(*link);
     link->met = false;
-    fresh.push_back(to);
-  };
-  for (const auto& hand_off : outbox.hand_offs)
-    prepare(hand_off.destination, &Link::migration_writer, &Links::migrations_to);
-  for (const auto& message : outbox.acks) prepare(message.destination, &Link::ack_writer, &Links::acks_to);
+    fresh.push_back(link->region);
+  }
   wait_for(fresh);
 }
 
@@ -306,18 +297,6 @@ void DdsTransport::Impl::send_hand_off(const core::HandOff& hand_off) {
   count_sent(counters.migration, writer.write(&migration), bytes_of(migration));
 }
 
-void DdsTransport::Impl::send_ack(const core::HandOffAck& message) {
-  Link* link = links.find(message.destination);
-  if (link == nullptr || link->lost) {
-    ++counters.migration_ack.not_sent;
-    return;
-  }
-  messages::encode(message, settings.map_version, ack);
-  Writer& writer = links.acks_to(*link);
-  writer.forget_acknowledged();
-  count_sent(counters.migration_ack, writer.write(&ack), bytes_of(ack));
-}
-
 DdsTransport::DdsTransport(Participant& participant, const TransportSettings& settings)
     : impl_((check_settings(settings), std::make_unique<Impl>(participant, settings))) {}
 
@@ -362,7 +341,6 @@ void DdsTransport::take(core::Inbox& inbox) {
   TransportCounters& counters = impl_->counters;
   for (const auto& reader : impl_->links.aura_readers()) take_all(*reader, impl_->aura, inbox.auras, counters.aura);
   take_all(impl_->links.migrations(), impl_->migration, inbox.hand_offs, counters.migration);
-  take_all(impl_->links.acks(), impl_->ack, inbox.acks, counters.migration_ack);
   if (impl_->is_time_for_peers()) impl_->take_peer_changes(inbox.peers);
 }
 
@@ -373,9 +351,6 @@ void DdsTransport::send(const core::Outbox& outbox) {
   impl_->make_writers_for(outbox);
   for (const auto& hand_off : outbox.hand_offs) {
     impl_->send_hand_off(hand_off);
-  }
-  for (const auto& ack : outbox.acks) {
-    impl_->send_ack(ack);
   }
   impl_->send_aura(outbox.aura);
 }

@@ -1,6 +1,6 @@
-// Transports one region's messages to and from other nodes over DDS (docs/design.md, "On the wire"): topics aura,
-// migration and migration_ack. Readers are matched only with the neighbours' partitions. Samples arrive in DDS threads,
-// which only wake the owner; decoding happens in take().
+// Transports one region's messages to and from other nodes over DDS (docs/design.md, "On the wire"): topics aura and
+// migration. Readers are matched only with the neighbours' partitions. Samples arrive in DDS threads, which only wake the
+// owner; decoding happens in take().
 #pragma once
 
 #include <chrono>
@@ -60,7 +60,6 @@ struct TopicCounters {
 struct TransportCounters {
   TopicCounters aura;
   TopicCounters migration;
-  TopicCounters migration_ack;
 };
 
 /// Thrown when neighbours were not matched in time. what() names them, and which endpoints of each are missing.

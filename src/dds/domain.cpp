@@ -128,14 +128,14 @@ void Domain::Leave::operator()(eprosima::fastdds::dds::DomainParticipant* partic
 
 void Domain::register_types(bool announces) {
   const std::array types = {
-      guarded<wire::AuraBatchPubSubType>(announces),    guarded<wire::MigrationPubSubType>(announces),
-      guarded<wire::MigrationAckPubSubType>(announces), guarded<wire::NodeStatusPubSubType>(announces),
-      guarded<wire::RegionMapPubSubType>(announces),    guarded<wire::RunControlPubSubType>(announces),
-      guarded<wire::ReplicaPubSubType>(announces),      guarded<wire::CommandPubSubType>(announces),
-      guarded<wire::CommandReplyPubSubType>(announces), guarded<wire::MeshShapePubSubType>(announces),
-      guarded<wire::ClusterGraphPubSubType>(announces), guarded<wire::CheckpointPubSubType>(announces),
-      guarded<wire::SeamParcelPubSubType>(announces),   guarded<wire::SetpointsPubSubType>(announces),
-      guarded<wire::InterestPubSubType>(announces),     guarded<wire::ObservationPubSubType>(announces),
+      guarded<wire::AuraBatchPubSubType>(announces),   guarded<wire::MigrationPubSubType>(announces),
+      guarded<wire::NodeStatusPubSubType>(announces),  guarded<wire::RegionMapPubSubType>(announces),
+      guarded<wire::RunControlPubSubType>(announces),  guarded<wire::ReplicaPubSubType>(announces),
+      guarded<wire::CommandPubSubType>(announces),     guarded<wire::CommandReplyPubSubType>(announces),
+      guarded<wire::MeshShapePubSubType>(announces),   guarded<wire::ClusterGraphPubSubType>(announces),
+      guarded<wire::CheckpointPubSubType>(announces),  guarded<wire::SeamParcelPubSubType>(announces),
+      guarded<wire::SetpointsPubSubType>(announces),   guarded<wire::InterestPubSubType>(announces),
+      guarded<wire::ObservationPubSubType>(announces),
   };
   for (const TypeSupport& type : types) {
     if (type.register_type(participant_.get()) != ReturnCode_t::RETCODE_OK) {

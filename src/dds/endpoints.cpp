@@ -38,9 +38,7 @@ std::string profile_of(const EndpointSpec& spec, const char* kind) {
   return spec.profile.empty() ? std::string(name_of(spec.topic)) + kind : spec.profile;
 }
 
-bool is_of_nodes(TopicId topic) {
-  return topic == TopicId::kAura || topic == TopicId::kMigration || topic == TopicId::kMigrationAck;
-}
+bool is_of_nodes(TopicId topic) { return topic == TopicId::kAura || topic == TopicId::kMigration; }
 
 /// Bytes that a datagram has beside the payload of a sample: RTPS header, destination, time, heartbeat, statistics, and
 /// the head of the sample.

@@ -11,8 +11,7 @@ Links::Links(Domain& domain, RegionId self, core::Generation life, const std::ve
       self_(self),
       life_(life),
       aura_writer_(domain, on(TopicId::kAura, {.source = self, .life = life}, self), domain.wakeup()),
-      migration_reader_(domain, on(TopicId::kMigration, {.destination = self, .life = life}, self), domain.wakeup()),
-      ack_reader_(domain, on(TopicId::kMigrationAck, {.destination = self, .life = life}, self), domain.wakeup()) {
+      migration_reader_(domain, on(TopicId::kMigration, {.destination = self, .life = life}, self), domain.wakeup()) {
   add(regions, true);
 }
 
@@ -33,22 +32,17 @@ void Links::add(const std::vector<RegionId>& regions, bool are_first) {
     link.region = region;
     link.auras = &auras;
     link.is_first = are_first;
-    if (!are_first) continue;
-    migrations_to(link);
-    acks_to(link);
+    if (are_first) migrations_to(link);
   }
 }
 
-Writer& Links::make(std::optional<Writer>& writer, TopicId topic, RegionId to) {
-  if (!writer) {
-    writer.emplace(domain_, on(topic, {.source = self_, .destination = to, .life = life_}, self_), domain_.wakeup());
+Writer& Links::migrations_to(Link& link) {
+  if (!link.migration_writer) {
+    const topics::Route route{.source = self_, .destination = link.region, .life = life_};
+    link.migration_writer.emplace(domain_, on(TopicId::kMigration, route, self_), domain_.wakeup());
   }
-  return *writer;
+  return *link.migration_writer;
 }
-
-Writer& Links::migrations_to(Link& link) { return make(link.migration_writer, TopicId::kMigration, link.region); }
-
-Writer& Links::acks_to(Link& link) { return make(link.ack_writer, TopicId::kMigrationAck, link.region); }
 
 Link* Links::find(RegionId region) {
   const auto found = std::ranges::find(links_, region, [](const auto& link) { return link->region; });
@@ -76,9 +70,7 @@ bool Links::is_lost(const Link& link) const {
   return link.lost || writer.lost || (link.match != 0 && writer.order != link.match);
 }
 
-std::size_t Links::endpoints_of(const Link& link) {
-  return (link.is_first ? 4 : 2) + (link.migration_writer ? 1 : 0) + (link.ack_writer ? 1 : 0);
-}
+std::size_t Links::endpoints_of(const Link& link) { return (link.is_first ? 3 : 2) + (link.migration_writer ? 1 : 0); }
 
 std::vector<std::string> Links::unmatched(const Link& link) const {
   std::vector<std::string> missing;
@@ -86,18 +78,10 @@ std::vector<std::string> Links::unmatched(const Link& link) const {
   const auto need = [&](bool there, const char* name) {
     if (!there) missing.emplace_back(name);
   };
-  const auto need_reader = [&](const std::optional<Writer>& writer, const char* name) {
-    need(!writer || writer->reaches(link.region), name);
-  };
-  const auto need_writer = [&](const Reader& reader, const char* name) {
-    need(!link.is_first || reader.watch().any_matched(node, link.region), name);
-  };
   need(link.auras->watch().any_matched(node, link.region), "its aura writer");
   need(aura_writer_.reaches(link.region), "its aura reader");
-  need_writer(migration_reader_, "its migration writer");
-  need_reader(link.migration_writer, "its migration reader");
-  need_writer(ack_reader_, "its migration_ack writer");
-  need_reader(link.ack_writer, "its migration_ack reader");
+  need(!link.is_first || migration_reader_.watch().any_matched(node, link.region), "its migration writer");
+  need(!link.migration_writer || link.migration_writer->reaches(link.region), "its migration reader");
   return missing;
 }
 

@@ -1,4 +1,4 @@
-// The endpoints by which a region exchanges messages with others (topics aura, migration, migration_ack). Everybody
+// The endpoints by which a region exchanges messages with others (topics aura and migration). Everybody
 // discovers every endpoint of everybody, so a region has one reader for each topic, whatever the number of regions that
 // it hears. Only what is for one receiver has a writer of its own for each.
 #pragma once
@@ -21,9 +21,8 @@ struct Link {
   core::RegionId region{};
   const Reader* auras = nullptr;  ///< the reader that hears its batches
   bool is_first = true;           ///< has been there from the beginning, at the other region, too
-  /// Those to first regions are there from the beginning. Bodies seldom go to others, so those are made when needed.
+  /// That to a first region is there from the beginning. Bodies seldom go to others, so those are made when needed.
   std::optional<Writer> migration_writer;
-  std::optional<Writer> ack_writer;
 
   std::uint64_t match = 0;  ///< RemoteWriter::order of the region's aura writer that we know; 0: none yet
   bool lost = false;
@@ -41,10 +40,8 @@ class Links {
   Link* find(core::RegionId region);
   /// Makes the links that are missing, if bodies need regions that were none of the first ones.
   void add(const std::vector<core::RegionId>& regions) { add(regions, false); }
-  /// The writer of hand-offs, or of acknowledgements, to the link's region. Makes it if need be: then it has yet to be
-  /// matched.
+  /// The writer of hand-offs to the link's region. Makes it if need be: then it has yet to be matched.
   Writer& migrations_to(Link& link);
-  Writer& acks_to(Link& link);
   const std::vector<std::unique_ptr<Link>>& all() const { return links_; }
   /// The link to the region to which a writer belongs, by its partition, or else to `claimed` if the writer may be
   /// any region's. Null: there is none.
@@ -66,18 +63,15 @@ class Links {
   /// Readers of auras: one for the first regions, and one for those of each later add().
   const std::vector<std::unique_ptr<Reader>>& aura_readers() const { return aura_readers_; }
   Reader& migrations() { return migration_reader_; }
-  Reader& acks() { return ack_reader_; }
 
  private:
   void add(const std::vector<core::RegionId>& regions, bool are_first);
-  Writer& make(std::optional<Writer>& writer, TopicId topic, core::RegionId to);
 
   Domain& domain_;
   core::RegionId self_;
   core::Generation life_;
   Writer aura_writer_;
   Reader migration_reader_;
-  Reader ack_reader_;
   std::vector<std::unique_ptr<Reader>> aura_readers_;
   std::vector<std::unique_ptr<Link>> links_;  ///< to the first regions, then to others as they were needed
 };

@@ -53,7 +53,6 @@ class WirePost::Endpoint : public transport::Transport {
       const Bytes& bytes = kept.hand_offs.at({envelope.redo, envelope.stamp, envelope.destination, envelope.sequence});
       arrive(coder_.hand_off(bytes, expected_), envelope, core::MessageKind::kHandOff, inbox.hand_offs, inbox);
     }
-    inbox.acks.insert(inbox.acks.end(), arrived.acks.begin(), arrived.acks.end());
     inbox.peers.insert(inbox.peers.end(), arrived.peers.begin(), arrived.peers.end());
   }
 
@@ -63,10 +62,8 @@ class WirePost::Endpoint : public transport::Transport {
     core::Outbox envelopes;
     envelopes.listeners = outbox.listeners;
     envelopes.expected = outbox.expected;
-    envelopes.acks = outbox.acks;
     forget_old(outbox.aura);
     std::size_t bytes = 0;
-    for (const core::HandOffAck& ack : outbox.acks) bytes += count(coder_.of(ack, outbox.aura.map_version).size(), 1);
     for (const core::HandOff& hand_off : outbox.hand_offs) bytes += put_away(hand_off, envelopes);
     bytes += put_away(outbox.aura, outbox.listeners.size(), envelopes);
     transport::MemoryNetwork& network = post_.network_;

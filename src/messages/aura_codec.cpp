@@ -21,8 +21,10 @@ namespace {
 using MaybeError = std::optional<WireError>;
 
 MaybeError check_shape(const wire::AuraBatch& in) {
-  if (std::max(in.deleted().size(), in.hand_off_destination().size()) > kMaxRows) return WireError::kTooLarge;
-  const bool fits = in.hand_off_destination().size() == in.hand_off_last().size();
+  const auto rows = std::max({in.deleted().size(), in.hand_off_destination().size(), in.adopted_source().size()});
+  if (rows > kMaxRows) return WireError::kTooLarge;
+  const bool fits = in.hand_off_destination().size() == in.hand_off_last().size() &&
+                    in.adopted_source().size() == in.adopted_last().size();
   return fits ? MaybeError{} : WireError::kLength;
 }
 
@@ -33,7 +35,8 @@ MaybeError check_values(const wire::AuraBatch& in, const Expected& expected) {
   const bool in_range = in.stamp() >= 0 && in.top_speed_m_s() >= 0 && in.top_radius_m() >= 0 &&
                         in.top_speed_m_s() <= bearable::kFastestReach_m_s &&
                         in.top_radius_m() <= bearable::kFarthestReach_m && all_body_ids(in.deleted()) &&
-                        all_below(in.hand_off_destination(), expected.region_count);
+                        all_below(in.hand_off_destination(), expected.region_count) &&
+                        all_below(in.adopted_source(), expected.region_count);
   return in_range ? MaybeError{} : WireError::kRange;
 }
 
@@ -72,8 +75,10 @@ void encode(const AuraBatch& batch, wire::AuraBatch& out) {
   out.violations(batch.violations);
   encode_auras(batch, out);
   fill(out.deleted(), batch.deletes, [](BodyId id) { return value_of(id); });
-  fill(out.hand_off_destination(), batch.hand_offs, [](const core::HandOffMark& m) { return value_of(m.destination); });
+  fill(out.hand_off_destination(), batch.hand_offs, [](const core::HandOffMark& m) { return value_of(m.region); });
   fill(out.hand_off_last(), batch.hand_offs, [](const core::HandOffMark& m) { return m.last_sequence; });
+  fill(out.adopted_source(), batch.adopted, [](const core::HandOffMark& m) { return value_of(m.region); });
+  fill(out.adopted_last(), batch.adopted, [](const core::HandOffMark& m) { return m.last_sequence; });
   encode_orders(batch.orders, out);
   encode_checks(batch, out);
 }
@@ -103,6 +108,9 @@ Decoded<AuraBatch> decode(const wire::AuraBatch& in, const Expected& expected) {
   fill(batch.deletes, in.deleted(), [](std::uint64_t id) { return static_cast<BodyId>(id); });
   for (std::size_t i = 0; i < in.hand_off_last().size(); ++i) {
     batch.hand_offs.push_back({static_cast<RegionId>(in.hand_off_destination()[i]), in.hand_off_last()[i]});
+  }
+  for (std::size_t i = 0; i < in.adopted_last().size(); ++i) {
+    batch.adopted.push_back({static_cast<RegionId>(in.adopted_source()[i]), in.adopted_last()[i]});
   }
   return batch;
 }

@@ -10,7 +10,6 @@
 namespace aurasim::wire {
 class AuraBatch;
 class Migration;
-class MigrationAck;
 }  // namespace aurasim::wire
 
 namespace aurasim::messages {
@@ -20,11 +19,8 @@ using Decoded = std::variant<Message, WireError>;
 
 void encode(const core::AuraBatch& batch, wire::AuraBatch& out);
 void encode(const core::HandOff& hand_off, wire::Migration& out);
-/// `map_version` is a parameter, because core::HandOffAck does not carry it.
-void encode(const core::HandOffAck& ack, std::uint64_t map_version, wire::MigrationAck& out);
 
 Decoded<core::AuraBatch> decode(const wire::AuraBatch& in, const Expected& expected);
 Decoded<core::HandOff> decode(const wire::Migration& in, const Expected& expected);
-Decoded<core::HandOffAck> decode(const wire::MigrationAck& in, const Expected& expected);
 
 }  // namespace aurasim::messages

@@ -14,7 +14,6 @@ namespace aurasim::messages {
 
 using core::BodyId;
 using core::HandOff;
-using core::HandOffAck;
 using core::RegionId;
 using core::value_of;
 
@@ -263,38 +262,6 @@ Decoded<HandOff> decode(const wire::Migration& in, const Expected& expected) {
                  .sequence = in.sequence_number(),
                  .reason = static_cast<core::HandOffReason>(in.reason()),
                  .cluster = std::move(cluster)};
-}
-
-void encode(const HandOffAck& ack, std::uint64_t map_version, wire::MigrationAck& out) {
-  out.source(value_of(ack.source));
-  out.destination(value_of(ack.destination));
-  out.version(kProtocolVersion);
-  out.generation(ack.generation);
-  out.redo(ack.redo);
-  out.stamp(ack.stamp);
-  out.map_version(map_version);
-  out.sequence_number(ack.sequence);
-}
-
-Decoded<HandOffAck> decode(const wire::MigrationAck& in, const Expected& expected) {
-  if (const auto error = check_header(in, expected)) {
-    return *error;
-  }
-  if (const auto error = check_source(in, expected)) {
-    return *error;
-  }
-  if (const auto error = check_destination(in, expected)) {
-    return *error;
-  }
-  if (in.stamp() < 0 || in.sequence_number() < 1) {
-    return WireError::kRange;
-  }
-  return HandOffAck{.source = static_cast<RegionId>(in.source()),
-                    .destination = static_cast<RegionId>(in.destination()),
-                    .generation = in.generation(),
-                    .stamp = in.stamp(),
-                    .sequence = in.sequence_number(),
-                    .redo = in.redo()};
 }
 
 }  // namespace aurasim::messages

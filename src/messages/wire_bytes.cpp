@@ -36,12 +36,10 @@ bool deserialize(Type& type, std::span<const std::uint8_t> bytes, Sample& sample
 struct WireBytes::Samples {
   wire::AuraBatch aura;
   wire::Migration migration;
-  wire::MigrationAck ack;
   wire::MeshShape mesh;
   wire::Setpoints setpoints;
   wire::AuraBatchPubSubType aura_type;
   wire::MigrationPubSubType migration_type;
-  wire::MigrationAckPubSubType ack_type;
   wire::MeshShapePubSubType mesh_type;
   wire::SetpointsPubSubType setpoints_type;
 };
@@ -60,11 +58,6 @@ std::vector<std::uint8_t> WireBytes::of(const core::AuraBatch& batch) {
 std::vector<std::uint8_t> WireBytes::of(const core::HandOff& hand_off) {
   encode(hand_off, samples_->migration);
   return serialized(samples_->migration_type, samples_->migration);
-}
-
-std::vector<std::uint8_t> WireBytes::of(const core::HandOffAck& ack, std::uint64_t map_version) {
-  encode(ack, map_version, samples_->ack);
-  return serialized(samples_->ack_type, samples_->ack);
 }
 
 std::vector<std::uint8_t> WireBytes::of(const NamedMesh& mesh) {

@@ -22,7 +22,6 @@ class WireBytes {
 
   std::vector<std::uint8_t> of(const core::AuraBatch& batch);
   std::vector<std::uint8_t> of(const core::HandOff& hand_off);
-  std::vector<std::uint8_t> of(const core::HandOffAck& ack, std::uint64_t map_version);
   std::vector<std::uint8_t> of(const NamedMesh& mesh);
   std::vector<std::uint8_t> of(const core::Setpoints& setpoints);
 

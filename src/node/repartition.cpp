@@ -108,7 +108,7 @@ bool Exchange::ready() {
   for (const core::AuraBatch& batch : inbox_.auras) {
     if (batch.generation != settings_.census) continue;
     expects_[batch.source] = std::ranges::any_of(
-        batch.hand_offs, [&](const core::HandOffMark& mark) { return mark.destination == settings_.region; });
+        batch.hand_offs, [&](const core::HandOffMark& mark) { return mark.region == settings_.region; });
   }
   for (core::HandOff& hand_off : inbox_.hand_offs) {
     if (hand_off.generation == settings_.census) came_.insert_or_assign(hand_off.source, std::move(hand_off));

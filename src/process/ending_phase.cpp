@@ -35,7 +35,7 @@ command_line::ExitCode EndingPhase::end() {
   if (run_.records.recorder() != nullptr && comes_to_its_end && !run_.node->settled())
     run_.records.write_settling(run_.node->settle());
   const dds::TransportCounters& sent = run_.transport().counters();
-  const std::uint64_t bytes = sent.aura.sent_bytes + sent.migration.sent_bytes + sent.migration_ack.sent_bytes;
+  const std::uint64_t bytes = sent.aura.sent_bytes + sent.migration.sent_bytes;
   const char* const outcome = fenced ? "fenced" : comes_to_its_end ? "finished" : "broken off";
   const messages::Status& status = run_.status.content();
   run_.records.finish(*run_.node,

@@ -14,8 +14,6 @@ constexpr std::array<Topic, kTopicCount> kTopics = {{
      "one per node and step, even if empty: \"state n is done\"; auras, orders"},
     {TopicId::kMigration, "migration", "aurasim::wire::Migration", Division::kByPair, true, kNodes, kNodes,
      "clusters change host"},
-    {TopicId::kMigrationAck, "migration_ack", "aurasim::wire::MigrationAck", Division::kByPair, true, kNodes, kNodes,
-     "\"I have adopted it\""},
     {TopicId::kNodeStatus, "node_status", "aurasim::wire::NodeStatus", Division::kBySource, false, kNodes,
      kNodes | kViewers, "ten times a second, of more than 10 nodes less often: state, counts, times"},
     {TopicId::kRegionMap, "region_map", "aurasim::wire::RegionMap", Division::kNone, false, kNodes, kNodes | kViewers,

@@ -17,7 +17,6 @@ namespace aurasim::topics {
 enum class TopicId : std::uint8_t {
   kAura,
   kMigration,
-  kMigrationAck,
   kNodeStatus,
   kRegionMap,
   kRunControl,
@@ -35,7 +34,7 @@ enum class TopicId : std::uint8_t {
   kSeam,
   kProbe
 };
-inline constexpr std::size_t kTopicCount = 19;
+inline constexpr std::size_t kTopicCount = 18;
 
 /// How the messages of a topic are divided into partitions.
 enum class Division : std::uint8_t {

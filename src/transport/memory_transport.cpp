@@ -26,7 +26,6 @@ class MemoryNetwork::Endpoint : public Transport {
  private:
   static void append(core::Inbox& inbox, core::AuraBatch m) { inbox.auras.push_back(std::move(m)); }
   static void append(core::Inbox& inbox, core::HandOff m) { inbox.hand_offs.push_back(std::move(m)); }
-  static void append(core::Inbox& inbox, core::HandOffAck m) { inbox.acks.push_back(m); }
   static void append(core::Inbox& inbox, core::PeerEvent m) { inbox.peers.push_back(m); }
 
   MemoryNetwork& network_;
@@ -71,7 +70,6 @@ void MemoryNetwork::send(core::RegionId from, const core::Outbox& outbox) {
   if (!outbox.listeners.empty()) listeners = outbox.listeners;
   for (const core::RegionId to : listeners) post(from, to, outbox.aura);
   for (const core::HandOff& hand_off : outbox.hand_offs) post(from, hand_off.destination, hand_off);
-  for (const core::HandOffAck& ack : outbox.acks) post(from, ack.destination, ack);
 }
 
 void MemoryNetwork::crash(core::RegionId region, double lease_s) {

@@ -41,7 +41,7 @@ class MemoryNetwork {
 
  private:
   class Endpoint;
-  using Message = std::variant<core::AuraBatch, core::HandOff, core::HandOffAck, core::PeerEvent>;
+  using Message = std::variant<core::AuraBatch, core::HandOff, core::PeerEvent>;
 
   void post(core::RegionId from, core::RegionId to, const Message& message);
   void send(core::RegionId from, const core::Outbox& outbox);

@@ -34,9 +34,11 @@ class IntakeTest : public ::testing::Test {
     inbox.hand_offs.push_back(ours(std::move(h)));
     intake->accept(inbox);
   }
-  void receive_ack(std::uint32_t from, std::uint64_t sequence) {
-    inbox.acks.push_back(ours(HandOffAck{region(from), region(0), 0, 0, sequence}));
-    intake->accept(inbox);
+  /// The next batch of `from`, which says that it has adopted the hand-offs of `source` up to `sequence`.
+  void receive_adopted(std::uint32_t from, std::uint64_t sequence, std::uint32_t source = 0) {
+    AuraBatch b = batch(from, intake->neighbours()[from - 1].received() + 1);
+    b.adopted = {{region(source), sequence}};
+    receive(b);
   }
   /// `from` has published all its batches up to `stamp`.
   void receive_until(std::uint32_t from, Step stamp) {
@@ -55,11 +57,6 @@ class IntakeTest : public ::testing::Test {
   }
 
   std::vector<Adoption> receive(Step n) { return intake->receive(n, violations); }
-  Outbox publish(Step stamp = 0) {
-    Outbox outbox;
-    intake->fill(outbox, stamp);
-    return outbox;
-  }
   static std::vector<std::uint64_t> ids_of(const std::vector<Adoption>& adoptions) {
     std::vector<std::uint64_t> ids;
     for (const Adoption& a : adoptions) {
@@ -67,10 +64,12 @@ class IntakeTest : public ::testing::Test {
     }
     return ids;
   }
-  std::vector<std::uint64_t> acknowledged() {
-    std::vector<std::uint64_t> sequences;
-    for (const HandOffAck& ack : publish().acks) sequences.push_back(ack.sequence);
-    return sequences;
+  /// The number up to which the hand-offs of region 1 have been adopted.
+  std::uint64_t adopted_of_1() const {
+    for (const HandOffMark& mark : intake->adopted()) {
+      if (mark.region == region(1)) return mark.last_sequence;
+    }
+    return 0;
   }
 
   const RegionMap map = RegionMap::columns(3, 10);

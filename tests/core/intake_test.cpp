@@ -177,40 +177,39 @@ TEST_F(Copies, AHandOffIsAcknowledgedWhenItIsAdoptedAndNotBefore) {
   listen(SyncMode::kDeterministic, 2);
   receive_all_until(9);
   receive(hand_off(1, 0, 5, {record_of(1, 1)}), 1);
-  EXPECT_THAT(acknowledged(), IsEmpty());
+  receive(hand_off(1, 0, 6, {record_of(2, 1)}), 2);
+  receive(hand_off(1, 0, 5, {record_of(1, 1)}), 1);
+  EXPECT_THAT(intake->adopted(), IsEmpty());
   receive(6);
-  EXPECT_THAT(acknowledged(), IsEmpty());
+  EXPECT_THAT(intake->adopted(), IsEmpty());
   receive(7);
-  const Outbox outbox = publish(7);
-  ASSERT_EQ(outbox.acks.size(), 1u);
-  EXPECT_EQ(outbox.acks[0].sequence, 1u);
-  EXPECT_EQ(outbox.acks[0].stamp, 7);
-  EXPECT_EQ(outbox.acks[0].source, region(0));
-  EXPECT_EQ(outbox.acks[0].destination, region(1));
-  EXPECT_EQ(outbox.acks[0].generation, settings.generation);
-  EXPECT_THAT(acknowledged(), IsEmpty());
+  EXPECT_EQ(adopted_of_1(), 1u);
+  receive(8);
+  EXPECT_EQ(adopted_of_1(), 2u);
+  receive(hand_off(1, 0, 5, {record_of(1, 1)}), 1);
+  EXPECT_EQ(adopted_of_1(), 2u) << "also after a copy, whose sender may have missed it";
 }
 
-TEST_F(Copies, AreAcknowledgedAgainOnlyAfterTheAdoption) {
-  listen(SyncMode::kDeterministic, 2);
+TEST_F(Copies, WhatFollowsALostHandOffIsNotAcknowledgedBeforeIt) {
+  listen(SyncMode::kFreeRunning, 1);
   receive_all_until(9);
+  receive(hand_off(1, 0, 5, {record_of(2, 1)}), 2);
+  EXPECT_EQ(ids_of(receive(7)), std::vector<std::uint64_t>{2});
+  EXPECT_EQ(adopted_of_1(), 0u);
   receive(hand_off(1, 0, 5, {record_of(1, 1)}), 1);
-  receive(hand_off(1, 0, 5, {record_of(1, 1)}), 1);
-  EXPECT_THAT(acknowledged(), IsEmpty());
-  receive(7);
-  EXPECT_THAT(acknowledged(), ElementsAre(1));
-  receive(hand_off(1, 0, 5, {record_of(1, 1)}), 1);
-  EXPECT_THAT(acknowledged(), ElementsAre(1));
+  EXPECT_EQ(ids_of(receive(8)), std::vector<std::uint64_t>{1});
+  EXPECT_EQ(adopted_of_1(), 2u);
 }
 
-TEST_F(Copies, OfAcknowledgementsAreCounted) {
+TEST_F(Copies, OnlyTheReceiverOfAHandOffSaysThatItIsAdopted) {
   listen(SyncMode::kBounded, 1);
   send(1, 3, {record_of(1, 1)});
-  receive_ack(1, 1);
+  receive_adopted(2, 1);
+  receive_adopted(1, 1, 2);
+  receive_adopted(1, 0);
+  EXPECT_EQ(open_bodies(departures), 1u);
+  receive_adopted(1, 1);
   EXPECT_EQ(open_bodies(departures), 0u);
-  EXPECT_EQ(intake->counters().copies, 0u);
-  receive_ack(1, 1);
-  EXPECT_EQ(intake->counters().copies, 1u);
 }
 
 TEST_F(Strangers, OfAnEarlierGenerationAreRefused) {
@@ -239,8 +238,7 @@ TEST_F(Strangers, WhoAreNoNeighboursAreRefused) {
   receive(batch(7, 0));
   receive(batch(0, 0));
   receive(hand_off(7, 0, 0, {record_of(1, 1)}), 1);
-  receive_ack(7, 1);
-  EXPECT_EQ(intake->counters().strangers, 4u);
+  EXPECT_EQ(intake->counters().strangers, 3u);
 }
 
 TEST_F(Strangers, TheDeadAreNotHeardAnyMore) {
@@ -284,8 +282,6 @@ TEST_F(Strangers, OfALaterGenerationStayInTheInboxInOrder) {
   }
   inbox.hand_offs.push_back(ours(hand_off(1, 0, 0, {record_of(1, 1)})));
   inbox.hand_offs.back().generation += 1;
-  inbox.acks.push_back(ours(HandOffAck{region(1), region(0), 0, 0, 1}));
-  inbox.acks.back().generation += 1;
   intake->accept(inbox);
   ASSERT_EQ(inbox.auras.size(), 3u);
   for (Step stamp = 0; stamp < 3; ++stamp) {
@@ -293,7 +289,6 @@ TEST_F(Strangers, OfALaterGenerationStayInTheInboxInOrder) {
     EXPECT_EQ(inbox.auras[static_cast<std::size_t>(stamp)].stamp, stamp);
   }
   EXPECT_EQ(inbox.hand_offs.size(), 1u);
-  EXPECT_EQ(inbox.acks.size(), 1u);
   EXPECT_EQ(intake->neighbours()[1].received(), 2);
   EXPECT_EQ(intake->counters().strangers, 0u);
 }

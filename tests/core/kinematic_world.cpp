@@ -109,7 +109,6 @@ void KinematicWorld::deliver(Step stamp) {
   for (std::size_t from = 0; from < nodes_.size(); ++from) {
     for (const RegionId to : nodes_[from].listeners) inboxes[value_of(to)].auras.push_back(published[from].aura);
     for (const HandOff& h : published[from].hand_offs) inboxes[value_of(h.destination)].hand_offs.push_back(h);
-    for (const HandOffAck& ack : published[from].acks) inboxes[value_of(ack.destination)].acks.push_back(ack);
   }
   for (std::size_t r = 0; r < nodes_.size(); ++r) nodes_[r].protocol->accept(inboxes[r]);
 }

@@ -251,7 +251,7 @@ TEST_P(ProjectionTest, AHandOffRaisesTheEpochByOneAndIsAdoptedKStepsLater) {
   EXPECT_EQ(hand_off_of(kWest)->cluster.bodies[0].epoch, 1u);
   ASSERT_EQ(world->published(kWest).aura.hand_offs.size(), 1u);
   EXPECT_EQ(world->published(kWest).aura.hand_offs[0].last_sequence, 1u);
-  EXPECT_EQ(world->published(kWest).aura.hand_offs[0].destination, kEast);
+  EXPECT_EQ(world->published(kWest).aura.hand_offs[0].region, kEast);
   for (int i = 1; i < k(); ++i) {
     world->step();
     EXPECT_EQ(world->host(kBody), std::nullopt);

@@ -77,7 +77,9 @@ TEST_F(ProtocolTest, AStaleArrivalIsRefusedAndAcknowledged) {
   EXPECT_THAT(changes.let_go, IsEmpty());
   EXPECT_EQ(protocol->counters().stale_arrivals, 1u);
   observe();
-  EXPECT_EQ(protocol->outbox().acks.size(), 1u);
+  ASSERT_EQ(protocol->outbox().aura.adopted.size(), 1u);
+  EXPECT_EQ(protocol->outbox().aura.adopted[0].region, region(1));
+  EXPECT_EQ(protocol->outbox().aura.adopted[0].last_sequence, 1u);
 }
 
 TEST_F(ProtocolTest, AnArrivalWithAHigherEpochReplacesTheBodyHere) {

@@ -178,7 +178,7 @@ TEST(HostsFile, DiffersFromTheDefaultOnlyInItsLeases) {
   auto* publisher = domain.participant().create_publisher(eprosima::fastdds::dds::PUBLISHER_QOS_DEFAULT);
   auto* subscriber = domain.participant().create_subscriber(eprosima::fastdds::dds::SUBSCRIBER_QOS_DEFAULT);
   for (const std::string topic :
-       {"aura", "migration", "migration_ack", "node_status", "region_map", "run_control", "replica", "replica_key"}) {
+       {"aura", "migration", "node_status", "region_map", "run_control", "replica", "replica_key"}) {
     DataWriterQos writer = hosts.writer(*publisher, topic + "_writer");
     const DataWriterQos default_writer = domain.profiles().writer(*publisher, topic + "_writer");
     DataReaderQos reader = hosts.reader(*subscriber, topic + "_reader");

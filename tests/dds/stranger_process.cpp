@@ -62,7 +62,6 @@ class Stranger {
       const RegionId r = node.region;
       deaf_.emplace_back(domain_, TopicId::kAura, topics::Route{.source = r}, next(r));
       deaf_.emplace_back(domain_, TopicId::kMigration, topics::Route{.source = r, .destination = next(r)}, next(r));
-      deaf_.emplace_back(domain_, TopicId::kMigrationAck, topics::Route{.source = r, .destination = next(r)}, next(r));
       deaf_.emplace_back(domain_, TopicId::kReplica, topics::Route{.source = r}, next(r));
     }
     deaf_.emplace_back(domain_, TopicId::kRunControl, topics::Route{}, RegionId{0});
@@ -75,8 +74,6 @@ class Stranger {
       auras_.push_back(writer<wire::AuraBatch>(TopicId::kAura, topics::Route{.source = r}, r));
       hand_offs_.push_back(
           writer<wire::Migration>(TopicId::kMigration, topics::Route{.source = r, .destination = next(r)}, r));
-      acks_.push_back(
-          writer<wire::MigrationAck>(TopicId::kMigrationAck, topics::Route{.source = r, .destination = next(r)}, r));
       statuses_.push_back(writer<wire::NodeStatus>(TopicId::kNodeStatus, topics::Route{.source = r}, r));
     }
     nobody_ = writer<wire::NodeStatus>(TopicId::kNodeStatus, topics::Route{.source = RegionId{9}}, RegionId{9});
@@ -94,6 +91,7 @@ class Stranger {
       batch.map_version = nodes_[r].map_version;
       batch.redo = 0;
       batch.orders.clear();
+      batch.adopted = {{next(nodes_[r].region), 1'000'000}};
       for (core::Step ahead = 0; ahead < 200; ++ahead) {
         batch.stamp = newest().step + ahead;
         auras_[r]->send(batch);
@@ -114,9 +112,6 @@ class Stranger {
         hand_off.sequence = number;
         hand_off.stamp = newest().step;
         hand_offs_[r]->send(hand_off);
-        acks_[r]->send(
-            core::HandOffAck{nodes_[r].region, next(nodes_[r].region), nodes_[r].generation, hand_off.stamp, number, 0},
-            nodes_[r].map_version);
       }
       hand_off.cluster.bodies[0].prototype = core::PrototypeId{5000};
       hand_offs_[r]->send(hand_off);
@@ -237,7 +232,6 @@ class Stranger {
   std::vector<DeafReader> deaf_;
   std::vector<std::unique_ptr<TypedWriter<wire::AuraBatch>>> auras_;
   std::vector<std::unique_ptr<TypedWriter<wire::Migration>>> hand_offs_;
-  std::vector<std::unique_ptr<TypedWriter<wire::MigrationAck>>> acks_;
   std::vector<std::unique_ptr<TypedWriter<wire::NodeStatus>>> statuses_;
   std::unique_ptr<TypedWriter<wire::NodeStatus>> nobody_;
   std::unique_ptr<TypedWriter<wire::RunControl>> runs_;

@@ -22,7 +22,6 @@ namespace aurasim::dds {
 namespace {
 
 using core::RegionId;
-using messages::testing::ack_of;
 using messages::testing::batch_of;
 using messages::testing::hand_off_of;
 using messages::testing::same;
@@ -42,7 +41,7 @@ void match(std::initializer_list<Peer*> peers) {
   }
 }
 
-TEST(TwoRegions, ExchangeAurasHandOffsAndAcksToTheBit) {
+TEST(TwoRegions, ExchangeAurasAndHandOffsToTheBit) {
   Peer a(own_domain(), 0, {1});
   Peer b(own_domain(), 1, {0});
   match({&a, &b});
@@ -57,11 +56,9 @@ TEST(TwoRegions, ExchangeAurasHandOffsAndAcksToTheBit) {
 
   core::Outbox from_a;
   from_a.aura = batch_of(0, RegionId{0});
-  from_a.acks = {ack_of(12, RegionId{0}, RegionId{1})};
   a.transport.send(from_a);
-  ASSERT_TRUE(take_until(b, [&] { return !b.inbox.auras.empty() && !b.inbox.acks.empty(); }));
+  ASSERT_TRUE(take_until(b, [&] { return !b.inbox.auras.empty(); }));
   EXPECT_TRUE(same(b.inbox.auras.at(0), from_a.aura));
-  EXPECT_TRUE(same(b.inbox.acks.at(0), from_a.acks[0]));
 
   EXPECT_EQ(b.transport.counters().aura.sent, 1U);
   EXPECT_EQ(b.transport.counters().aura.sent_bytes, a.transport.counters().aura.received_bytes);
@@ -150,9 +147,8 @@ TEST(Readers, AreOneForEachTopicAndNameOnlyTheNeighboursPartitions) {
   }
   factory->delete_participant(participant);
   using Row = std::pair<const std::string, std::vector<std::string>>;
-  EXPECT_THAT(onlooker.seen(),
-              UnorderedElementsAre(Row("aura", {"region/1", "region/3", "region/7"}),
-                                   Row("migration", {"region/*/to/4"}), Row("migration_ack", {"region/*/to/4"})));
+  EXPECT_THAT(onlooker.seen(), UnorderedElementsAre(Row("aura", {"region/1", "region/3", "region/7"}),
+                                                    Row("migration", {"region/*/to/4"})));
 }
 
 /// Regions that were no neighbours at first hear each other's batches, and need no more until bodies go there.
@@ -170,7 +166,7 @@ TEST(ALaterRegion, GetsItsFirstHandOffAndAnswers) {
   from_far.expected = {RegionId{0}};
   far.transport.send(from_far);
   match({&a, &far});
-  EXPECT_EQ(a.transport.found(), 6U + 2U);
+  EXPECT_EQ(a.transport.found(), 4U + 2U);
 
   from_a.expected.clear();
   from_a.listeners = {RegionId{1}, RegionId{2}};
@@ -178,13 +174,14 @@ TEST(ALaterRegion, GetsItsFirstHandOffAndAnswers) {
   a.transport.send(from_a);
   ASSERT_TRUE(take_until(far, [&] { return !far.inbox.hand_offs.empty() && !far.inbox.auras.empty(); }));
   EXPECT_TRUE(same(far.inbox.hand_offs.at(0), from_a.hand_offs[0]));
-  EXPECT_EQ(a.transport.found(), 6U + 3U);
+  EXPECT_EQ(a.transport.found(), 4U + 3U);
 
   from_far.expected.clear();
-  from_far.acks = {ack_of(12, RegionId{2}, RegionId{0})};
+  from_far.aura.adopted = {{RegionId{0}, 1}};
+  from_far.listeners = {RegionId{0}};
   far.transport.send(from_far);
-  ASSERT_TRUE(take_until(a, [&] { return !a.inbox.acks.empty() && !a.inbox.auras.empty(); }));
-  EXPECT_TRUE(same(a.inbox.acks.at(0), from_far.acks[0]));
+  ASSERT_TRUE(take_until(a, [&] { return !a.inbox.auras.empty(); }));
+  EXPECT_TRUE(same(a.inbox.auras.back(), from_far.aura));
   ASSERT_TRUE(take_until(b, [&] { return b.inbox.auras.size() == 2; }));
   EXPECT_TRUE(b.inbox.hand_offs.empty());
   EXPECT_EQ(b.transport.counters().migration.received, 0U) << "what is for one receiver goes to no other";

@@ -140,12 +140,6 @@ TEST(Fuzz, HandOffs) {
   report("migration", read_mutations<wire::MigrationPubSubType>(message));
 }
 
-TEST(Fuzz, Acks) {
-  wire::MigrationAck message;
-  encode(testing::ack_of(3), 1, message);
-  report("migration_ack", read_mutations<wire::MigrationAckPubSubType>(message));
-}
-
 TEST(Fuzz, Statuses) {
   wire::NodeStatus message;
   encode(testing::status_of(1), message);

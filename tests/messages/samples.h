@@ -80,6 +80,7 @@ inline core::AuraBatch batch_of(std::size_t auras, core::RegionId source = core:
   }
   batch.deletes = {core::BodyId{90}, core::BodyId{91}};
   batch.hand_offs = {{core::RegionId{0}, 17}, {core::RegionId{2}, 0}};
+  batch.adopted = {{core::RegionId{1}, 5}, {core::RegionId{3}, std::uint64_t{1} << 40U}};
   batch.orders = one_order_of_each_kind();
   batch.redo = 3;
   batch.alarms = {{2, 400, core::BodyId{5}, core::BodyId{1'000'000'001}}};
@@ -134,11 +135,6 @@ inline core::HandOff hand_off_of(std::size_t bodies, core::RegionId source = cor
   return hand_off;
 }
 
-inline core::HandOffAck ack_of(std::uint64_t sequence, core::RegionId source = core::RegionId{0},
-                               core::RegionId destination = core::RegionId{1}) {
-  return {.source = source, .destination = destination, .generation = 7, .stamp = 100, .sequence = sequence};
-}
-
 // ---- equality to the bit: -0.0 is not 0.0
 
 inline bool same(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
@@ -179,14 +175,17 @@ inline bool same(const core::AuraRecord& a, const core::AuraRecord& b) {
          same_as_float(a.w_WB, b.w_WB) && speed_off <= 2e-7 * a.speed_m_s && a.audience == b.audience;
 }
 
+inline bool same_mark(const core::HandOffMark& a, const core::HandOffMark& b) {
+  return a.region == b.region && a.last_sequence == b.last_sequence;
+}
+
 inline bool same(const core::AuraBatch& a, const core::AuraBatch& b) {
   return a.source == b.source && a.generation == b.generation && a.stamp == b.stamp && a.map_version == b.map_version &&
          a.full == b.full && same(a.top_speed_m_s, b.top_speed_m_s) && same(a.top_radius_m, b.top_radius_m) &&
          a.violations == b.violations &&
          same_rows(a.updates, b.updates, [](const auto& x, const auto& y) { return same(x, y); }) &&
-         a.deletes == b.deletes && same_rows(a.hand_offs, b.hand_offs, [](const auto& x, const auto& y) {
-           return x.destination == y.destination && x.last_sequence == y.last_sequence;
-         });
+         a.deletes == b.deletes && same_rows(a.hand_offs, b.hand_offs, same_mark) &&
+         same_rows(a.adopted, b.adopted, same_mark);
 }
 
 inline bool same(const core::BodyRecord& a, const core::BodyRecord& b) {
@@ -211,11 +210,6 @@ inline bool same(const core::HandOff& a, const core::HandOff& b) {
                      return x.id == y.id && x.first_value == y.first_value && x.value_count == y.value_count;
                    }) &&
          same(a.cluster.joint_values, b.cluster.joint_values);
-}
-
-inline bool same(const core::HandOffAck& a, const core::HandOffAck& b) {
-  return a.source == b.source && a.destination == b.destination && a.generation == b.generation && a.stamp == b.stamp &&
-         a.sequence == b.sequence;
 }
 
 }  // namespace aurasim::messages::testing

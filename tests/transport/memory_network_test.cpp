@@ -36,7 +36,6 @@ class MemoryNetworkTest : public ::testing::Test {
     hand_off.source = from;
     hand_off.destination = to;
     hand_off.sequence = sequence;
-    outbox.acks.push_back({from, to, 0, 0, sequence});
     network->endpoint(from).send(outbox);
   }
   core::Inbox take(RegionId region) {
@@ -92,15 +91,13 @@ TEST_F(MemoryNetworkTest, TheFrameTimeOfTheSenderCounts) {
   EXPECT_THAT(received(kB), ElementsAre(7));
 }
 
-TEST_F(MemoryNetworkTest, HandOffsAndAcknowledgementsReachOnlyTheirDestination) {
+TEST_F(MemoryNetworkTest, HandOffsReachOnlyTheirDestination) {
   connect(slow(0));
   send(kA, kC, 4);
   network->advance_to(0);
   const core::Inbox inbox = take(kC);
   ASSERT_EQ(inbox.hand_offs.size(), 1u);
   EXPECT_EQ(inbox.hand_offs[0].sequence, 4u);
-  ASSERT_EQ(inbox.acks.size(), 1u);
-  EXPECT_EQ(inbox.acks[0].sequence, 4u);
   EXPECT_TRUE(take(kB).hand_offs.empty());
 }
 

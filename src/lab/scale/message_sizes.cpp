@@ -61,8 +61,7 @@ std::vector<ResultRow> message_sizes() {
       row("each aura deleted", each(deletes)),
       row("hand-off with nothing in it", coder.of(hand_off_of(0, 0)).size()),
       row("each body handed over", each([&](std::size_t n) { return coder.of(hand_off_of(n, 0)).size(); })),
-      row("each contact point handed over", each([&](std::size_t n) { return coder.of(hand_off_of(1, n)).size(); })),
-      row("acknowledgement", coder.of(core::HandOffAck{}, 0).size())};
+      row("each contact point handed over", each([&](std::size_t n) { return coder.of(hand_off_of(1, n)).size(); }))};
 }
 
 }  // namespace aurasim::lab
