@@ -22,6 +22,7 @@ void Clusters::begin(std::span<const Path> paths, std::span<const std::uint8_t> 
   bodies_.assign(paths.size(), {});
   for (std::uint32_t i = 0; i < bodies_.size(); ++i) bodies_[i].label = bodies_[i].next = i;
   altered_.clear();
+  counted_.clear();
   near_.build(paths);
   if (!aura_.warns()) return;
   for (const Contact& c : contacts) unite(c.a, c.b);
@@ -34,6 +35,8 @@ void Clusters::go_on(std::span<const Path> paths, std::span<const std::uint8_t> 
                      std::span<const Contact> joints, const Change& change) {
   begin_step(paths, hops);
   near_.renew(paths, change.bodies);
+  for (const std::uint32_t label : counted_) bodies_[label].outside = 0;
+  counted_.clear();
   loose_.clear();
   for (const std::uint32_t i : altered_) loosen(i);
   for (const std::uint32_t i : change.bodies) loosen(i);
@@ -72,6 +75,13 @@ void Clusters::hold_together(std::uint32_t a, std::uint32_t b) {
   altered_.push_back(a);
 }
 
+void Clusters::note_outside(std::span<const std::uint32_t> bodies) {
+  for (const std::uint32_t i : bodies) {
+    ++bodies_[of(i)].outside;
+    counted_.push_back(of(i));
+  }
+}
+
 std::vector<Contact> Clusters::links() const {
   std::vector<Contact> links;
   for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
@@ -91,6 +101,7 @@ void Clusters::unite(std::uint32_t a, std::uint32_t b) {
   bodies_[b].link = link;
   for_each_member(b, [&](std::uint32_t j) { bodies_[j].label = a; });
   bodies_[a].size += bodies_[b].size;
+  bodies_[a].outside += bodies_[b].outside;
   std::swap(bodies_[a].next, bodies_[b].next);  // splices the two rings of members
 }
 
@@ -101,11 +112,17 @@ void Clusters::ask_members(std::uint32_t i) {
   });
 }
 
-void Clusters::complete(std::uint32_t i) {
-  if (bodies_[i].is_asked) return;
+/// False: it has been begun before.
+bool Clusters::begin_to_complete(std::uint32_t i) {
+  if (bodies_[i].is_asked) return false;
   completed_.push_back(i);
   altered_.push_back(i);
   ask_members(i);
+  return true;
+}
+
+void Clusters::complete(std::uint32_t i) {
+  if (!begin_to_complete(i)) return;
   while (aura_.warns() && !to_ask_.empty()) {
     const std::uint32_t j = to_ask_.back();
     to_ask_.pop_back();
@@ -115,8 +132,36 @@ void Clusters::complete(std::uint32_t i) {
   to_ask_.clear();
 }
 
+void Clusters::complete_outside(std::uint32_t i) {
+  if (!is_outside(i) || !begin_to_complete(i)) return;
+  while (aura_.warns() && !to_ask_.empty() && is_outside(i)) {
+    const std::uint32_t j = to_ask_.back();
+    to_ask_.pop_back();
+    Progress::mark();
+    find_linked(j);
+    for (const std::uint32_t other : linked_) {
+      if (!is_outside(other)) {
+        bodies_[of(i)].outside = 0;
+        break;
+      }
+      ask_members(other);
+      unite(i, other);
+    }
+  }
+  to_ask_.clear();
+}
+
 /// Unites body i with those that it may touch.
 void Clusters::look_around(std::uint32_t i) {
+  find_linked(i);
+  for (const std::uint32_t j : linked_) {
+    ask_members(j);
+    unite(i, j);
+  }
+}
+
+/// Lists the bodies of other clusters that body i may touch.
+void Clusters::find_linked(std::uint32_t i) {
   const Path& path = paths_[i];
   linked_.clear();
   const auto ask = [&](std::uint32_t j) {
@@ -129,10 +174,6 @@ void Clusters::look_around(std::uint32_t i) {
   };
   const auto range_at = [&](double speed_m_s) { return link_ranges_.back().at(path.speed_m_s + speed_m_s); };
   near_.for_each_near(path.pose.p_WB, path.radius_m, range_at, ask);
-  for (const std::uint32_t j : linked_) {
-    ask_members(j);
-    unite(i, j);
-  }
 }
 
 }  // namespace aurasim::core

@@ -33,6 +33,14 @@ class Clusters {
   /// Unites the clusters of two bodies, as if a joint held them together. Call before the first complete().
   void hold_together(std::uint32_t a, std::uint32_t b);
 
+  /// Names the bodies that are outside of our region. Call before the first complete().
+  void note_outside(std::span<const std::uint32_t> bodies);
+  /// Is every body of body i's cluster outside of our region, as far as the cluster is known?
+  bool is_outside(std::uint32_t i) const { return bodies_[of(i)].outside == bodies_[of(i)].size; }
+  /// Like complete(), but only until something is found that is not outside of our region. The two are not united then,
+  /// and is_outside() is false of the cluster. Call after all complete() of the state.
+  void complete_outside(std::uint32_t i);
+
   /// Completes the cluster of body `i`: no body outside it is linked to one inside.
   void complete(std::uint32_t i);
 
@@ -64,15 +72,18 @@ class Clusters {
  private:
   struct Body {
     std::uint32_t label = 0;
-    std::uint32_t next = 0;  ///< the next member of its cluster, in a ring
-    std::uint32_t size = 1;  ///< of a label: number of members
-    Contact link;            ///< of a body that is no label any more: the pair by which it ceased to be one
-    bool is_asked = false;   ///< what it is linked to has been looked for, or is about to be
-    bool is_loose = false;   ///< in go_on() only: its cluster is made anew
+    std::uint32_t next = 0;     ///< the next member of its cluster, in a ring
+    std::uint32_t size = 1;     ///< of a label: number of members
+    std::uint32_t outside = 0;  ///< of a label: number of members outside of our region
+    Contact link;               ///< of a body that is no label any more: the pair by which it ceased to be one
+    bool is_asked = false;      ///< what it is linked to has been looked for, or is about to be
+    bool is_loose = false;      ///< in go_on() only: its cluster is made anew
   };
 
   void unite(std::uint32_t a, std::uint32_t b);
   void look_around(std::uint32_t i);
+  void find_linked(std::uint32_t i);
+  bool begin_to_complete(std::uint32_t i);
   void ask_members(std::uint32_t i);
   void begin_step(std::span<const Path> paths, std::span<const std::uint8_t> hops);
   void loosen(std::uint32_t i);
@@ -85,6 +96,7 @@ class Clusters {
   OwnIndex near_;
   std::vector<Body> bodies_;
   std::vector<std::uint32_t> completed_;  ///< bodies passed to complete()
+  std::vector<std::uint32_t> counted_;    ///< labels with members outside, before the first complete()
   std::vector<std::uint32_t> altered_;    ///< a body of each cluster that is more than its contacts and joints make it
   std::vector<std::uint32_t> loose_;
   std::vector<std::uint32_t> to_ask_;

@@ -68,6 +68,7 @@ void InterestMatching::form_clusters(const Snapshot& snapshot) {
     clusters_.begin(own_.paths(), hops_, snapshot.contacts, snapshot.joints);
   }
   for (const Contact& pair : joined_) clusters_.hold_together(pair.a, pair.b);
+  clusters_.note_outside(outside_);
 }
 
 void InterestMatching::gather_foreign(const Snapshot& snapshot, std::span<const Neighbour> neighbours,

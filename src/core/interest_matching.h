@@ -45,6 +45,8 @@ class InterestMatching {
   Audience audience(std::uint32_t i) const { return audiences_[i]; }
   /// No part of the body's bounding sphere is over its host's region (kNone: its centre is not).
   bool outside(std::uint32_t i) const;
+  /// All bodies of which outside() is true; ascending.
+  std::span<const std::uint32_t> all_outside() const { return outside_; }
   /// An aura from elsewhere has met the cluster of body i.
   bool touched(std::uint32_t i) const { return verdict(i).touched; }
   /// A foreign aura may meet the cluster so soon that another node could already be sending bodies here because of it.
@@ -100,6 +102,7 @@ class InterestMatching {
   double widest_range(double speed_m_s) const;
   void judge();
   void judge(const Pair& pair);
+  void complete_who_may_leave();
   void judge_expected(const Pair& pair);
   void hit(std::uint32_t own, RegionId host);
   bool pulls_from(RegionId host, RegionId other) const;

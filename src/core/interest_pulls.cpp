@@ -42,14 +42,21 @@ void InterestMatching::judge() {
     hits_.push_back({pair.own, foreign_[pair.foreign].host});
     hit(pair.own, foreign_[pair.foreign].host);
   }
-  // The bodies were judged as members of smaller clusters, held together by contacts and joints only.
-  for (const Hit& hit : hits_) clusters_.complete(hit.own);
-  for (const std::uint32_t i : outside_) clusters_.complete(i);
-  for (const std::uint32_t i : expecting_) clusters_.complete(i);
+  complete_who_may_leave();
   clear_verdicts();
   for (const Hit& each : hits_) hit(each.own, each.host);
   if (homeward_hops() == 0) return;
   for (const Pair& pair : pairs_) judge_expected(pair);
+}
+
+/// Until now, bodies were judged as members of smaller clusters, held together by contacts and joints only. Of a
+/// cluster that nobody pulls and that has a part in our region it does not matter who else belongs to it: it stays.
+void InterestMatching::complete_who_may_leave() {
+  for (const Hit& hit : hits_) {
+    if (pulls_from(hit.host, vicinity_.self)) clusters_.complete(hit.own);
+  }
+  for (const std::uint32_t i : expecting_) clusters_.complete(i);
+  for (const std::uint32_t i : outside_) clusters_.complete_outside(i);
 }
 
 /// Notes that an aura of `host` met the cluster of body `own`. The host keeps the foreign body, or our cluster goes to

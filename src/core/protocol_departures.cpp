@@ -49,6 +49,10 @@ void Protocol::decide(const Snapshot& snapshot) {
 
 void Protocol::decide_for_clusters(const Snapshot& snapshot) {
   list_complete_clusters();
+  for (const std::uint32_t i : matching_.all_outside()) {
+    largest_cluster_ = std::max(largest_cluster_, matching_.clusters().size(i));
+    if (!matching_.clusters().is_complete(i)) projection_.track(i).island_since = -1;  // a part of it is inside
+  }
   for (const auto& [first, cluster] : complete_) {
     Progress::mark();
     largest_cluster_ = std::max(largest_cluster_, matching_.clusters().size(first));
@@ -113,10 +117,7 @@ void Protocol::decide_naively(std::uint32_t i, const Snapshot& snapshot) {
 
 /// Has the cluster of body i been an island for long enough?
 bool Protocol::settles_elsewhere(std::uint32_t i, Step now) {
-  bool island = !matching_.touched(i) && !matching_.expected(i);
-  if (island) {
-    matching_.clusters().for_each_member(i, [&](std::uint32_t j) { island = island && matching_.outside(j); });
-  }
+  const bool island = !matching_.touched(i) && !matching_.expected(i) && matching_.clusters().is_outside(i);
   Step since = 0;
   matching_.clusters().for_each_member(i, [&](std::uint32_t j) {
     Track& track = projection_.track(j);

@@ -130,6 +130,38 @@ TEST_F(ClusterTest, IsNotCompletedUnlessAskedFor) {
   EXPECT_FALSE(clusters->is_complete(c));
 }
 
+/// A row in which each ball may touch the next one. Only the first ones are outside.
+TEST_F(ClusterTest, IsCompletedOutsideUntilSomethingInsideIsFound) {
+  std::vector<std::uint32_t> row;
+  for (int i = 0; i < 12; ++i) row.push_back(place(Vec3(1.05 * i, 0, 0), Vec3(60 - 5 * i, 0, 0)));
+  for (std::uint32_t i = 6; i < 11; ++i) contact(i, i + 1);
+  for (const std::size_t outside : {3U, 12U}) {
+    SCOPED_TRACE(outside);
+    begin();
+    clusters->note_outside(std::span(row).first(outside));
+    for (const std::uint32_t i : std::span(row).first(outside)) clusters->complete_outside(i);
+    EXPECT_TRUE(together(0, 2));
+    EXPECT_EQ(clusters->is_outside(0), outside == row.size());
+    EXPECT_EQ(together(0, 11), outside == row.size()) << "what stays is left alone";
+  }
+}
+
+/// A ball outside that touches one inside stays, and is looked at no further.
+TEST_F(ClusterTest, IsNotCompletedOutsideIfAPartOfItIsInside) {
+  const auto a = place(Vec3(0, 0, 0)), b = place(Vec3(1, 0, 0)), c = place(Vec3(-1.05, 0, 0), Vec3(6, 0, 0));
+  contact(a, b);
+  begin();
+  clusters->note_outside(std::array{a});
+  clusters->complete_outside(a);
+  EXPECT_FALSE(clusters->is_outside(a));
+  EXPECT_FALSE(clusters->is_complete(a));
+  EXPECT_FALSE(together(a, c));
+  clusters->go_on(paths, hops, contacts, joints, {});
+  EXPECT_FALSE(clusters->is_outside(a));
+  clusters->note_outside(std::array{a, b});
+  EXPECT_TRUE(clusters->is_outside(a)) << "each state counts anew";
+}
+
 TEST_F(ClusterTest, TheNaiveControlKnowsNoClusters) {
   rules.kind = AuraKind::kNone;
   const auto a = place(Vec3(0, 0, 0)), b = place(Vec3(0.5, 0, 0));

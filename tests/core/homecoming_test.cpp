@@ -45,6 +45,25 @@ TEST_F(Arrival, GoesHomeAsSoonAsItIsAnIsland) {
   }
 }
 
+/// It touches a ball of our region for a while, so it begins to be an island anew.
+TEST_F(Arrival, GoesHomeAfterItHasBeenAnIslandWithoutABreak) {
+  for (const bool checked : {false, true}) {
+    SCOPED_TRACE(checked);
+    settings.aura.redo = checked;
+    snapshot = {};
+    now = 0;
+    arrive(HandOffReason::kBoundaryTraversal);
+    host(9, Vec3(-20, 0, 0));
+    const Step touches = island() - 1;
+    pass_steps_until(touches - 1);
+    snapshot.contacts = {{0, 1}};
+    pass_steps_until(touches);
+    snapshot.contacts.clear();
+    while (now < 3 * island() && snapshot.bodies.size() == 2) pass_step();
+    EXPECT_EQ(now, touches + island());
+  }
+}
+
 /// A ball comes up from behind that stays, because it is connected with one of our region. The way home looks a hop
 /// further than clusters.
 TEST_F(Arrival, GoesHomeOnlyIfNobodyWhoStaysMayMeetItSoon) {
