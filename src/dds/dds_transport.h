@@ -1,6 +1,6 @@
 // Transports one region's messages to and from other nodes over DDS (docs/design.md, "On the wire"): topics aura and
-// migration. Readers are matched only with the neighbours' partitions. Samples arrive in DDS threads, which only wake the
-// owner; decoding happens in take().
+// migration. Readers are matched only with the neighbours' partitions. Samples arrive in DDS threads, which only wake
+// the owner; decoding happens in take().
 #pragma once
 
 #include <chrono>
