@@ -10,6 +10,7 @@
 #include "dds/hub.h"
 #include "host/stop_signal.h"
 #include "setup/arguments.h"
+#include "setup/key_choice.h"
 #include "setup/launch_setup.h"
 
 namespace aurasim::cli {
@@ -19,18 +20,25 @@ using namespace std::chrono_literals;
 
 constexpr auto kTurn = 50ms;  ///< introductions are repeated in these turns
 
-int run_hub(const command_line::FileArguments& files) {
+struct HubArguments {
+  command_line::FileArguments files;
+  setup::KeyArguments keys;
+};
+
+int run_hub(const HubArguments& arguments) {
+  const command_line::FileArguments& files = arguments.files;
   const config::Launch launch = config::read_launch(files.file, files.overrides);
   if (launch.dds.discovery != config::Discovery::kNeighbours) {
     throw config::BadConfig({fmt::format("{}: dds.discovery needs a hub only if it is neighbours", files.file)});
   }
   spdlog::set_pattern("%H:%M:%S.%e %^%l%$ hub: %v");
   host::catch_stop_signals();
-  dds::Hub hub(setup::dds_settings(launch));
+  const auto member = setup::member_for(launch, arguments.keys.as, {security::Role::kHub});
+  dds::Hub hub(setup::with_keys(setup::dds_settings(launch), launch, member));
   while (!host::stop_requested()) hub.turn(kTurn);
   const dds::Hub::Counts counts = hub.counts();
-  spdlog::debug("{} messages passed on, {} not; {} pairs of processes introduced", counts.passed, counts.failed,
-                counts.pairs);
+  spdlog::debug("{} messages passed on, {} not, {} refused; {} pairs of processes introduced", counts.passed,
+                counts.failed, counts.refused, counts.pairs);
   command_line::leave(0);  // in silence, as nodes do
 }
 
@@ -39,10 +47,11 @@ int run_hub(const command_line::FileArguments& files) {
 void add_hub(CLI::App& program, command_line::Action& action) {
   CLI::App* command =
       program.add_subcommand("hub", "let the processes of a run find each other, with dds.discovery: neighbours");
-  const auto files = std::make_shared<command_line::FileArguments>();
-  files->add_to(*command);
+  const auto arguments = std::make_shared<HubArguments>();
+  arguments->files.add_to(*command);
+  arguments->keys.add_to(*command);
   command->footer("Example:\n  aurasim hub demo --set dds.discovery=neighbours");
-  command->callback([files, &action] { action = [files] { return run_hub(*files); }; });
+  command->callback([arguments, &action] { action = [arguments] { return run_hub(*arguments); }; });
 }
 
 }  // namespace aurasim::cli

@@ -117,6 +117,9 @@ int check(const KeysArguments& a) {
     std::string remark = state.problem.empty() ? "good" : state.problem;
     if (state.valid) {
       until = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::chrono::system_clock::to_time_t(state.valid->until)));
+      if (state.problem.empty() && !state.has_all_rights) {
+        remark = "made before its role had all its rights: aurasim keys rotate";
+      }
       if (state.problem.empty() && state.valid->until < now + kEndsSoon) remark = "ends soon: aurasim keys rotate";
     }
     fmt::print("{:<20} {:<9} until {}  {}\n", state.name, state.role, until, remark);
@@ -176,10 +179,12 @@ void add_keys(CLI::App& program, command_line::Action& action) {
 
   CLI::App* one = command("add", "make a key for a process of another role", "keys desk --role operator", add);
   one->add_option("NAME", a->name, "letters, digits, - and _")->required();
-  one->add_option("--role", a->role,
-                  "spare: takes over a region; viewer: sees; operator: steers as well; recorder: reads everything")
+  one->add_option(
+         "--role", a->role,
+         "spare: takes over a region; viewer: sees; operator: steers as well; recorder: reads everything; hub: "
+         "passes on what nodes publish to all nodes")
       ->required()
-      ->check(CLI::IsMember({"spare", "viewer", "operator", "recorder"}));
+      ->check(CLI::IsMember({"spare", "viewer", "operator", "recorder", "hub"}));
   add_days(*one, a);
 
   CLI::App* packed = command("pack", "put what a host needs into one file", "keys region-2 spare-1", pack);

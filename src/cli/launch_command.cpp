@@ -64,12 +64,22 @@ void look_at_keys(const config::Launch& launch) {
   for (std::uint32_t r = 0; r < launch.regions.size(); ++r) {
     setup::with_keys({}, launch, setup::member_for_node(launch, "", core::RegionId{r}));
   }
+  if (launch.dds.discovery != config::Discovery::kNeighbours) return;
+  if (const std::string why = setup::why_no_hub(launch); !why.empty()) {
+    throw config::BadConfig({"dds.discovery: found neighbours, whose hub needs a key; " + why});
+  }
 }
 
 /// Gives a run of many nodes on this host a hub, unless the launch file says how they find each other.
 config::Launch with_hub(config::Launch launch, command_line::FileArguments& files) {
-  if (launch.dds.discovery != config::Discovery::kAuto || launch.regions.size() <= config::kMostNodesWithoutHub ||
-      !launch.dds.security.empty() || !config::is_on_loopback(launch.dds)) {
+  const std::size_t most_without =
+      launch.dds.security.empty() ? config::kMostNodesWithoutHub : config::kMostNodesWithoutHubWithKeys;
+  if (launch.dds.discovery != config::Discovery::kAuto || launch.regions.size() <= most_without ||
+      !config::is_on_loopback(launch.dds)) {
+    return launch;
+  }
+  if (const std::string why = setup::why_no_hub(launch); !why.empty()) {
+    spdlog::info("{} nodes start without a hub, which would be faster: {}", launch.regions.size(), why);
     return launch;
   }
   files.overrides.emplace_back("dds.discovery=neighbours");

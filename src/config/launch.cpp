@@ -54,7 +54,7 @@ void check_each(const Field& list, std::string_view allowed, bool (*is_good)(con
   }
 }
 
-/// The hub of discovery: neighbours is found on loopback only, and there is no key for it.
+/// The hub of discovery: neighbours is found on loopback only.
 void check_neighbours(const Field& field, const Dds& dds) {
   if (dds.discovery != Discovery::kNeighbours) return;
   const Fields fields(field);
@@ -62,11 +62,6 @@ void check_neighbours(const Field& field, const Dds& dds) {
     fields["interfaces"].refuse(
         "addresses of loopback with discovery: neighbours, which is for one host only; on several hosts use multicast, "
         "peers or server");
-  }
-  if (!dds.security.empty()) {
-    fields["security"].refuse(
-        "nothing with discovery: neighbours, whose hub has no key; with keys use multicast, peers "
-        "or server");
   }
   if (fields.has("peers")) fields["peers"].refuse("nothing with discovery: neighbours, whose hub introduces the peers");
 }

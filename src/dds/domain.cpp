@@ -87,7 +87,7 @@ Domain::Domain(const Settings& settings)
   has_keys_ = settings.keys.has_value();
   if (has_keys_) make_room_for_handshakes(qos);
   loopback_only_ = on_loopback_only(qos);
-  hears_hubs_ = speaks_by_hub_ || (settings.discovery == config::Discovery::kAuto && loopback_only_ && !has_keys_);
+  hears_hubs_ = speaks_by_hub_ || (settings.discovery == config::Discovery::kAuto && loopback_only_);
   believes_silence_ = settings.believes_silence || !loopback_only_;
   if (!believes_silence_) be_patient_with_this(qos);
   // A discovery server has to be asked again until it answers.
@@ -163,8 +163,7 @@ void Domain::on_participant_discovery(eprosima::fastdds::dds::DomainParticipant*
   const bool is_gone = info.status == Info::REMOVED_PARTICIPANT || info.status == Info::DROPPED_PARTICIPANT;
   const auto& data = info.info.m_userData;
   if (hears_hubs_ && std::ranges::equal(data, kHubUserData)) {
-    is_gone ? speakers_.remove_hub(process) : speakers_.add_hub(process);
-    wakeup_.notify();
+    note_hub(process, is_gone);
   }
   if (introductions_ != nullptr) {
     const auto& points = info.info.metatraffic_locators.unicast;
@@ -173,6 +172,17 @@ void Domain::on_participant_discovery(eprosima::fastdds::dds::DomainParticipant*
     wakeup_.notify();
   }
   if (refusals_) SecurityLog::instance().note(info);
+}
+
+/// With keys anybody's announcement may say so. It only lets the readers look for a hub: what shows it is its
+/// partition.
+void Domain::note_hub(const ProcessPrefix& process, bool is_gone) {
+  if (has_keys_) {
+    hub_is_announced_ = true;
+  } else {
+    is_gone ? speakers_.remove_hub(process) : speakers_.add_hub(process);
+  }
+  wakeup_.notify();
 }
 
 void Domain::onParticipantAuthentication(eprosima::fastdds::dds::DomainParticipant*,

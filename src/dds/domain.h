@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -50,6 +51,8 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   Speakers& speakers() { return speakers_; }
   /// True if messages to all go by a hub.
   bool speaks_by_hub() const { return speaks_by_hub_; }
+  /// True if this process reads what a hub passes on in a partition of its own: in a run with keys that has a hub.
+  bool reads_from_hub() const { return has_keys_ && hears_hubs_ && (speaks_by_hub_ || hub_is_announced_); }
   /// True if a hub is there, or none is needed.
   bool has_way_to_all() const { return !speaks_by_hub_ || speakers_.has_hub(); }
   /// Which of the other participants use keys.
@@ -86,6 +89,7 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   void on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
                                eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
   void register_types(bool announces);
+  void note_hub(const ProcessPrefix& process, bool is_gone);
   void introduce(const rtps::WireGuid& endpoint, bool is_writer, std::string topic,
                  std::vector<std::string> partitions);
 
@@ -101,6 +105,7 @@ class Domain final : private eprosima::fastdds::dds::DomainParticipantListener {
   bool has_keys_ = false;
   bool speaks_by_hub_ = false;
   bool hears_hubs_ = false;                       ///< what a hub passes on counts as its source's
+  std::atomic<bool> hub_is_announced_{false};     ///< with keys: a process calls itself a hub
   std::shared_ptr<Introductions> introductions_;  ///< only in a hub
   bool loopback_only_ = false;
   bool believes_silence_ = true;

@@ -93,6 +93,18 @@ std::vector<std::string> by_hub_if_needed(const Domain& domain, const EndpointSp
   return partitions;
 }
 
+/// Spec of a reader of what a hub passes on in a run with keys. Nothing: it passes on no such messages.
+std::optional<EndpointSpec> spec_from_hub(const EndpointSpec& spec) {
+  const bool goes_by_hub = std::ranges::any_of(
+      spec.partitions, [&](const std::string& partition) { return topics::goes_by_hub(spec.topic, partition); });
+  if (!goes_by_hub || spec.is_of_hub || spec.is_from_hub) return std::nullopt;
+  EndpointSpec from_hub = spec;
+  from_hub.partitions = {topics::kFromHub};
+  from_hub.region.reset();
+  from_hub.is_from_hub = true;
+  return from_hub;
+}
+
 [[noreturn]] void throw_not_created(const char* what, const EndpointSpec& spec) {
   throw DdsError(fmt::format("cannot create the {} of topic {} in partition {} (Fast DDS says more on standard error)",
                              what, name_of(spec.topic), fmt::join(spec.partitions, ", ")));
@@ -258,7 +270,16 @@ Reader::Reader(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
     : domain_(domain),
       type_(domain.participant().find_type(domain.topic(spec.topic).get_type_name())),
       part_fields_(part_fields_of(type_)),
+      wakeup_(wakeup),
+      is_from_hub_(spec.is_from_hub),
+      spec_from_hub_(spec_from_hub(spec)),
       watch_(wakeup, [&speakers = domain.speakers()](const Guid& writer) { return speakers.home_of(writer); }) {
+  look_for_hub();
+  if (spec.is_from_hub) {
+    watch_.tell_matches([&speakers = domain.speakers()](const Guid& hub, bool is_there) {
+      is_there ? speakers.add_hub(hub.guidPrefix) : speakers.remove_hub(hub.guidPrefix);
+    });
+  }
   auto& topic = domain.topic(spec.topic);
   const auto stopped = domain.guard().delivery().stop();
   SubscriberQos subscriber_qos;
@@ -297,6 +318,18 @@ Reader::Reader(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
   }
 }
 
+/// Reads what a hub passes on, once this process has to, in a run with keys.
+void Reader::look_for_hub() {
+  if (!spec_from_hub_ || !domain_.reads_from_hub()) return;
+  const EndpointSpec spec = *std::exchange(spec_from_hub_, std::nullopt);
+  try {
+    from_hub_ = std::make_unique<Reader>(domain_, spec, wakeup_);
+  } catch (const DdsError& error) {
+    if (domain_.speaks_by_hub()) throw;
+    domain_.speakers().say(fmt::format("a process says that it is a hub, and is not heard: {}", error.what()));
+  }
+}
+
 Reader::~Reader() {
   const auto stopped = domain_.guard().delivery().stop();
   reader_->set_listener(nullptr);
@@ -305,11 +338,21 @@ Reader::~Reader() {
 }
 
 bool Reader::take(void* sample, Origin* origin) {
+  look_for_hub();
+  return (from_hub_ != nullptr && from_hub_->take_own(sample, origin)) || take_own(sample, origin);
+}
+
+std::uint64_t Reader::take_lost() {
+  return std::exchange(lost_, 0) + (from_hub_ == nullptr ? 0 : from_hub_->take_lost());
+}
+
+/// Takes the next message of this DDS reader alone.
+bool Reader::take_own(void* sample, Origin* origin) {
   SampleInfo info;
   while (reader_->take_next_sample(sample, &info) == ReturnCode_t::RETCODE_OK) {
     if (!info.valid_data) continue;
     Guid writer = eprosima::fastrtps::rtps::iHandle2GUID(info.publication_handle);
-    const bool by_hub = domain_.speakers().is_hub(writer.guidPrefix);
+    const bool by_hub = domain_.has_keys() ? is_from_hub_ : domain_.speakers().is_hub(writer.guidPrefix);
     if (by_hub) {
       const auto& origin_of = info.related_sample_identity;
       writer = origin_of.writer_guid();

@@ -34,6 +34,8 @@ struct EndpointSpec {
   /// For the endpoints of a hub: samples of many sources, which are passed on as they come. The history needs no room
   /// for parts of a message that the next one replaces.
   bool is_of_hub = false;
+  /// For a reader: what comes has been passed on by a hub, because only a hub may publish in these partitions.
+  bool is_from_hub = false;
 };
 
 /// Spec of an endpoint of `region`, or of nobody's, for the messages of a topic that go this route.
@@ -122,7 +124,7 @@ class Reader {
   /// A sample of the topic's generated type.
   std::shared_ptr<void> make_sample();
   /// Messages lost since the last call, because parts of them are missing or do not fit together.
-  std::uint64_t take_lost() { return std::exchange(lost_, 0); }
+  std::uint64_t take_lost();
 
   /// Refuses a taken sample. Counted against its sender only if it is no message of this program at all. Other
   /// versions, runs and maps, and what a person has typed, are not counted as the sender's fault.
@@ -138,13 +140,19 @@ class Reader {
   std::vector<std::string> partitions() const;
 
  private:
+  void look_for_hub();
+  bool take_own(void* sample, Origin* origin);
   bool put_together(void* sample, const messages::Part& part, const Guid& writer);
 
   Domain& domain_;
   eprosima::fastdds::dds::TypeSupport type_;
   const messages::PartFields* part_fields_ = nullptr;  ///< null: the topic's messages never come in parts
   std::uint64_t lost_ = 0;
+  Wakeup& wakeup_;
+  bool is_from_hub_ = false;
   SeenNumbers by_hub_;
+  std::optional<EndpointSpec> spec_from_hub_;  ///< nothing: a hub does not pass on such messages, or they are read
+  std::unique_ptr<Reader> from_hub_;           ///< of what a hub passes on in a run with keys
   ReaderWatch watch_;
   eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;
   eprosima::fastdds::dds::DataReader* reader_ = nullptr;

@@ -58,24 +58,24 @@ class Socket {
   int fd_;
 };
 
-std::string why_no_second(std::uint32_t domain) {
-  return fmt::format("DDS domain {} already has a hub, or another program has its UDP port {}", domain,
-                     hub_port(domain));
+std::string why_no_second(const Settings& settings) {
+  return fmt::format("DDS domain {} already has a hub{}, or another program has its UDP port {}", settings.domain,
+                     settings.keys ? " with keys" : "", hub_port(settings));
 }
 
 /// A name on this host that one process has at a time. Fast DDS shares its ports, so two hubs that start in the same
 /// moment would both find the port free. The kernel gives the name back when the process ends, however it ends.
 class Claim {
  public:
-  explicit Claim(std::uint32_t domain) : fd_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+  explicit Claim(const Settings& settings) : fd_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
     ::sockaddr_un address{};
     address.sun_family = AF_UNIX;
-    const std::string name = fmt::format("aurasim hub {}", domain);
+    const std::string name = fmt::format("aurasim hub {}", hub_port(settings));
     name.copy(&address.sun_path[1], name.size());  // it begins with a zero byte: a name without a file
     const auto size = static_cast<::socklen_t>(offsetof(::sockaddr_un, sun_path) + 1 + name.size());
     if (fd_ >= 0 && ::bind(fd_, reinterpret_cast<const ::sockaddr*>(&address), size) == 0) return;  // NOLINT
     if (fd_ >= 0) ::close(fd_);
-    throw DdsError(why_no_second(domain));
+    throw DdsError(why_no_second(settings));
   }
   ~Claim() { ::close(fd_); }
   Claim(const Claim&) = delete;
@@ -88,13 +88,13 @@ class Claim {
 MeetingPoint point_of(const Settings& settings) {
   ::in_addr address{};
   ::inet_pton(AF_INET, settings.interfaces.empty() ? "127.0.0.1" : settings.interfaces.front().c_str(), &address);
-  return {ntohl(address.s_addr), hub_port(settings.domain)};
+  return {ntohl(address.s_addr), hub_port(settings)};
 }
 
 /// The settings of a hub, with introductions. Throws if the domain has one.
 Settings checked(Settings settings) {
   if (Hub::is_there(settings)) {
-    throw DdsError(why_no_second(settings.domain));
+    throw DdsError(why_no_second(settings));
   }
   settings.introductions = std::make_shared<Introductions>();
   return settings;
@@ -102,7 +102,8 @@ Settings checked(Settings settings) {
 
 /// Partitions in which the hub publishes. Statuses are read by the name of their region as well as by a pattern.
 /// Another vendor's reader that names a pattern does not match a writer that names one, so there is a name, too.
-std::vector<std::string> partitions_of(TopicId topic) {
+std::vector<std::string> partitions_of(TopicId topic, bool has_keys) {
+  if (has_keys) return {topics::kFromHub};
   if (topic == TopicId::kNodeStatus) return {"region/*", "region/hub"};
   return {topics::kWorldPartition};
 }
@@ -112,7 +113,7 @@ struct Lane {
   Lane(Domain& domain, TopicId topic_in, std::size_t depth)
       : topic(topic_in),
         reader(domain, spec_of(topic, {topics::kEveryPartitionToHub}), domain.wakeup()),
-        writer(domain, spec_of(topic, partitions_of(topic)), domain.wakeup()),
+        writer(domain, spec_of(topic, partitions_of(topic, domain.has_keys())), domain.wakeup()),
         kept(depth) {}
 
   static EndpointSpec spec_of(TopicId topic, std::vector<std::string> partitions) {
@@ -134,9 +135,10 @@ struct Lane {
 struct Hub::Impl {
   /// `settings`: checked.
   explicit Impl(const Settings& settings)
-      : claim(settings.domain), introductions(settings.introductions), participant(settings) {}
+      : claim(settings), introductions(settings.introductions), participant(settings) {}
 
   void pass_on(Lane& lane);
+  bool speaks_for_itself(const PassedSample& status);
   void pass_on_checkpoints(Lane& lane);
   void forget_the_gone(Lane& lane);
   void write(Lane& lane, const PassedSample& sample) {
@@ -162,9 +164,20 @@ void Hub::Impl::pass_on(Lane& lane) {
     PassedSample sample;
     sample.sample = lane.reader.make_sample();
     if (!lane.reader.take_sample(sample)) return;
+    if (lane.topic == TopicId::kNodeStatus && !speaks_for_itself(sample)) {
+      ++counts.refused;
+      continue;
+    }
     write(lane, sample);
     lane.kept.keep(std::move(sample));
   }
+}
+
+/// True if a status came in the partition of the region that it names. Those who get it from the hub do not know its
+/// writer, so only the hub can tell. With keys this partition shows that the writer may publish as that region.
+bool Hub::Impl::speaks_for_itself(const PassedSample& status) {
+  const auto region = participant.domain().speakers().home_of(status.writer);
+  return region == core::RegionId{static_cast<const wire::NodeStatus*>(status.sample.get())->source()};
 }
 
 /// A sample of a writer that is gone reaches nobody who joins later, as if the writer itself had published to all.

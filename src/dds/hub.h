@@ -25,9 +25,10 @@ class Hub {
   void turn(std::chrono::nanoseconds time_out);
 
   struct Counts {
-    std::uint64_t passed = 0;  ///< samples passed on
-    std::uint64_t failed = 0;  ///< samples that could not be written
-    std::size_t pairs = 0;     ///< pairs of processes that have been introduced and are there
+    std::uint64_t passed = 0;   ///< samples passed on
+    std::uint64_t failed = 0;   ///< samples that could not be written
+    std::uint64_t refused = 0;  ///< statuses in the name of another region, which are not passed on
+    std::size_t pairs = 0;      ///< pairs of processes that have been introduced and are there
   };
   Counts counts() const;
 

@@ -97,7 +97,7 @@ void set_peers(DomainParticipantQos& qos, const Settings& settings) {
 /// multicast, where it announces itself: so it meets tools and clients that know nothing of hubs.
 void set_hub(DomainParticipantQos& qos, const Settings& settings) {
   const std::string address = settings.interfaces.empty() ? "127.0.0.1" : settings.interfaces.front();
-  const Locator_t hub = locator_of(address, hub_port(settings.domain));
+  const Locator_t hub = locator_of(address, hub_port(settings));
   const bool is_hub = settings.introductions != nullptr;
   auto& builtin = qos.wire_protocol().builtin;
   builtin.initialPeersList.clear();
@@ -197,11 +197,12 @@ DomainParticipantQos participant_qos(Profiles& profiles, const Settings& setting
   return qos;
 }
 
-std::uint16_t hub_port(std::uint32_t domain) {
+std::uint16_t hub_port(const Settings& settings) {
   // RTPS gives a domain 250 ports; the participants' begin at the 10th, after two for multicast.
-  constexpr std::uint32_t kOfHub = 2;
+  constexpr std::uint32_t kOfHub = 2, kOfHubWithKeys = 3;
   const eprosima::fastrtps::rtps::PortParameters ports;
-  return static_cast<std::uint16_t>(ports.portBase + ports.domainIDGain * domain + kOfHub);
+  return static_cast<std::uint16_t>(ports.portBase + ports.domainIDGain * settings.domain +
+                                    (settings.keys ? kOfHubWithKeys : kOfHub));
 }
 
 void make_room_for_handshakes(DomainParticipantQos& qos) {

@@ -18,9 +18,9 @@ eprosima::fastdds::dds::DomainParticipantQos participant_qos(Profiles& profiles,
 /// User data of a hub's participant.
 inline constexpr std::string_view kHubUserData = "aurasim hub";
 
-/// Where the hub of a run in this DDS domain receives announcements (Discovery::kNeighbours). No participant of the
-/// domain has this port by itself.
-std::uint16_t hub_port(std::uint32_t domain);
+/// UDP port at which the hub of a run receives announcements (Discovery::kNeighbours). No participant of the domain has
+/// this port by itself. A run with keys has another one, so that an open run beside it may have a hub, too.
+std::uint16_t hub_port(const Settings& settings);
 
 /// Largest datagram that all transports send, bytes, without the headers of IP and UDP.
 std::uint32_t largest_datagram_B(const eprosima::fastdds::dds::DomainParticipantQos& qos);

@@ -66,7 +66,8 @@ void Speakers::add(const Guid& writer, const std::vector<std::string>& partition
     if (region_of_partition(partition) != home) home = -1;
   }
   const std::lock_guard lock(mutex_);
-  homes_.insert_or_assign(writer, home);
+  const auto [known, is_new] = homes_.try_emplace(writer, home);
+  if (!is_new && known->second != home) known->second = -1;
 }
 
 void Speakers::remove(const Guid& writer) {

@@ -32,7 +32,9 @@ class Speakers {
 
   /// Sets the own process, which may publish as any region.
   void set_self(const ProcessPrefix& self);
-  /// Takes note of a discovered writer and the partitions that it announces, or of a writer that is gone.
+  /// Takes note of a discovered writer and the partitions that it announces, or of a writer that is gone. A writer that
+  /// changes its partitions to those of another region is of no region any more: Fast DDS 2.9.1 checks the new ones
+  /// against the writer's key, but does not end the matches that the old ones have made.
   void add(const Guid& writer, const std::vector<std::string>& partitions);
   void remove(const Guid& writer);
 

@@ -40,6 +40,7 @@ void ReaderWatch::on_subscription_matched(eprosima::fastdds::dds::DataReader*,
       forget_all_but_newest_lost();
     }
   }
+  if (tell_match_) tell_match_(guid, status.current_count_change > 0);
   wakeup_.notify();
 }
 

@@ -53,6 +53,9 @@ class ReaderWatch final : public eprosima::fastdds::dds::DataReaderListener {
   /// Sets the grace time. Call it before the reader exists. At least two proofs of life must fit into it. kForEver:
   /// silence is never believed.
   void set_grace(std::chrono::nanoseconds grace) { grace_ = grace; }
+  /// Sets what is called for each match of a writer, and for its end. Call it before the reader exists. It runs in DDS
+  /// threads.
+  void tell_matches(std::function<void(const Guid&, bool is_matched)> tell) { tell_match_ = std::move(tell); }
 
   void on_data_available(eprosima::fastdds::dds::DataReader* reader) override;
   void on_subscription_matched(eprosima::fastdds::dds::DataReader* reader,
@@ -82,6 +85,7 @@ class ReaderWatch final : public eprosima::fastdds::dds::DataReaderListener {
 
   Wakeup& wakeup_;
   RegionOf region_of_;
+  std::function<void(const Guid&, bool)> tell_match_;
   std::chrono::nanoseconds grace_{0};
   mutable std::mutex mutex_;
   std::vector<RemoteWriter> writers_;

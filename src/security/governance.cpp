@@ -7,8 +7,9 @@ namespace {
 
 /// Topics that observers read and that nodes act on. A process that may only read a topic has the key that decrypts it,
 /// and could publish with it in its writer's name. So each message of these topics also carries an authentication code
-/// for each of its readers.
-constexpr const char* kTopicsThatObserversRead[] = {"aura", "node_status", "region_map", "run_control", "shape"};
+/// for each of its readers. So does `checkpoint`, which all nodes read, from each other and from the hub.
+constexpr const char* kTopicsOfManyReaders[] = {"aura",        "node_status", "region_map",
+                                                "run_control", "shape",       "checkpoint"};
 
 std::string topic_rule(const char* topic, const char* protection) {
   return fmt::format(
@@ -26,7 +27,7 @@ std::string topic_rule(const char* topic, const char* protection) {
 
 std::string governance_document() {
   std::string topics;
-  for (const char* topic : kTopicsThatObserversRead) topics += topic_rule(topic, "ENCRYPT_WITH_ORIGIN_AUTHENTICATION");
+  for (const char* topic : kTopicsOfManyReaders) topics += topic_rule(topic, "ENCRYPT_WITH_ORIGIN_AUTHENTICATION");
   topics += topic_rule("*", "ENCRYPT");
   return fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<dds><domain_access_rules><domain_rule>"

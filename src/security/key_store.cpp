@@ -283,15 +283,26 @@ KeyFiles KeyStore::files_of(const std::string& name) const {
   return files;
 }
 
+bool KeyStore::has_all_rights(const std::string& name) const {
+  const std::optional<Member> member = find(name);
+  if (!member) return false;
+  const std::string permissions_ca = read_key_file(folder_ / "permissions_ca.pem");
+  const std::string document = about(folder_of(name) / "permissions.p7s",
+                                     [&](const std::string& text) { return verified(text, permissions_ca); });
+  return has_rules(document, grants_of(member->role, member->region));
+}
+
 std::vector<MemberState> KeyStore::check() const {
   std::vector<MemberState> states;
   for (const std::string& name : names()) {
-    MemberState state{name, "", std::nullopt, ""};
+    MemberState state;
+    state.name = name;
     try {
       const Certificate certificate = about(folder_of(name) / "certificate.pem", read_certificate);
       state.role = certificate.subject.unit;
       state.valid = certificate.valid;
       files_of(name);
+      state.has_all_rights = has_all_rights(name);
     } catch (const BadKeys& error) {
       state.problem = error.what();
     }

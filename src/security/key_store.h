@@ -44,7 +44,8 @@ struct MemberState {
   std::string name;
   std::string role;
   std::optional<Validity> valid;
-  std::string problem;  ///< empty: none
+  bool has_all_rights = true;  ///< false: the key was made by an earlier version, and its role has more rights today
+  std::string problem;         ///< empty: none
 };
 
 /// A key store. Every failure is a BadKeys that names the file, what was found, and what is allowed.
@@ -74,6 +75,9 @@ class KeyStore {
   /// Returns the files that a process of that name needs, after checking that they are there, private, of this store,
   /// in date and not revoked.
   KeyFiles files_of(const std::string& name) const;
+  /// True if the signed permissions of `name` have all rights that its role has today. Keys of earlier versions may
+  /// lack some.
+  bool has_all_rights(const std::string& name) const;
   /// Checks every name and returns its state.
   std::vector<MemberState> check() const;
   /// Files that a host needs to run processes of these names, relative to the folder.

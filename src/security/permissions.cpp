@@ -14,22 +14,39 @@
 namespace aurasim::security {
 namespace {
 
-constexpr std::array<const char*, kRoleCount> kRoleNames = {"region", "spare", "viewer", "operator", "recorder"};
+constexpr std::array<const char*, kRoleCount> kRoleNames = {"region", "spare", "viewer", "operator", "recorder", "hub"};
 
 /// Margin on both dates, because Fast DDS reads them in the time zone of its host.
 constexpr std::chrono::hours kTimeZones{24};
 
 using topics::Topic;
 
-/// Adds the right to use a topic in the partitions of a route, in all lives of the run.
-void grant(std::vector<Grant>& grants, const Topic& topic, const topics::Route& route = {}) {
+/// Partitions of a route, in all lives of the run.
+std::vector<std::string> partitions_of(const Topic& topic, const topics::Route& route) {
   std::vector<std::string> partitions = {topics::partition_of(topic.id, route)};
   // A pattern that ends in `*` matches the partitions of later lives, too.
   if (topic.by_life && !partitions.front().ends_with('*')) {
     partitions.push_back(topics::in_later_lives(partitions.front()));
   }
   if (topic.division == topics::Division::kByPairAndToAll) partitions.emplace_back(topics::kWorldPartition);
-  grants.push_back({topic.name, std::move(partitions)});
+  return partitions;
+}
+
+/// Adds the right to publish on a topic: to the readers, and to the hub where it passes the messages on.
+void grant_to_publish(Grants& grants, const Topic& topic, const topics::Route& route = {}) {
+  const std::vector<std::string> partitions = partitions_of(topic, route);
+  Grant grant{topic.name, partitions};
+  for (const std::string& partition : partitions) {
+    if (topics::goes_by_hub(topic.id, partition)) grant.partitions.push_back(topics::to_hub(partition));
+  }
+  grants.publishes.push_back(std::move(grant));
+}
+
+/// Adds the right to read a topic: from those who publish, and from the hub where it passes the messages on.
+void grant_to_read(Grants& grants, const Topic& topic, const topics::Route& route = {}) {
+  Grant grant{topic.name, partitions_of(topic, route)};
+  if (topics::has_way_by_hub(topic.id)) grant.partitions.emplace_back(topics::kFromHub);
+  grants.subscribes.push_back(std::move(grant));
 }
 
 /// Rights of the node of `region`; without a region: of the node of any. It may read from all sources, because the
@@ -37,8 +54,8 @@ void grant(std::vector<Grant>& grants, const Topic& topic, const topics::Route& 
 Grants grants_of_node(std::optional<core::RegionId> region) {
   Grants grants;
   for (const Topic& topic : topics::all()) {
-    if (topic.published_by & topics::kNodes) grant(grants.publishes, topic, {.source = region});
-    if (topic.read_by & topics::kNodes) grant(grants.subscribes, topic, {.destination = region});
+    if (topic.published_by & topics::kNodes) grant_to_publish(grants, topic, {.source = region});
+    if (topic.read_by & topics::kNodes) grant_to_read(grants, topic, {.destination = region});
   }
   return grants;
 }
@@ -47,8 +64,8 @@ Grants grants_of_node(std::optional<core::RegionId> region) {
 Grants grants_of_others(std::uint8_t parties) {
   Grants grants;
   for (const Topic& topic : topics::all()) {
-    if (topic.published_by & parties) grant(grants.publishes, topic);
-    if (topic.read_by & parties) grant(grants.subscribes, topic);
+    if (topic.published_by & parties) grant_to_publish(grants, topic);
+    if (topic.read_by & parties) grant_to_read(grants, topic);
   }
   return grants;
 }
@@ -59,9 +76,23 @@ Grants grants_of_recorder() {
   return grants;
 }
 
+/// Rights of a hub: what nodes publish to all nodes, and nothing else.
+Grants grants_of_hub() {
+  Grants grants;
+  for (const Topic& topic : topics::all()) {
+    if (!topics::has_way_by_hub(topic.id)) continue;
+    grants.publishes.push_back({topic.name, {topics::kFromHub}});
+    grants.subscribes.push_back({topic.name, {topics::kEveryPartitionToHub}});
+  }
+  return grants;
+}
+
 std::string xml_date(Seconds at) {
   return fmt::format("{:%Y-%m-%dT%H:%M:%S}", fmt::gmtime(std::chrono::system_clock::to_time_t(at)));
 }
+
+constexpr const char* kPublish = "publish";
+constexpr const char* kSubscribe = "subscribe";
 
 std::string rule(const Grant& grant, const char* direction) {
   std::string partitions;
@@ -69,7 +100,7 @@ std::string rule(const Grant& grant, const char* direction) {
     partitions += fmt::format("<partition>{}</partition>", partition);
   return fmt::format(
       "<allow_rule><domains><id_range><min>0</min><max>232</max></id_range></domains><{0}><topics><topic>{1}</topic>"
-      "</topics><partitions>{2}</partitions></{0}></allow_rule>\n",
+      "</topics><partitions>{2}</partitions></{0}></allow_rule>",
       direction, grant.topic, partitions);
 }
 
@@ -93,6 +124,8 @@ Grants grants_of(Role role, std::uint32_t region) {
       return grants_of_others(topics::kOperators | topics::kViewers);
     case Role::kRecorder:
       return grants_of_recorder();
+    case Role::kHub:
+      return grants_of_hub();
     case Role::kViewer:
       break;
   }
@@ -111,9 +144,17 @@ std::string permissions_document(const Subject& subject, const Validity& valid, 
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<dds><permissions><grant name=\"{}\"><subject_name>{}</subject_name>"
       "<validity><not_before>{}</not_before><not_after>{}</not_after></validity>\n",
       subject.name, subject.text(), xml_date(valid.from - kTimeZones), xml_date(valid.until + kTimeZones));
-  for (const Grant& grant : grants.publishes) text += rule(grant, "publish");
-  for (const Grant& grant : grants.subscribes) text += rule(grant, "subscribe");
+  for (const Grant& grant : grants.publishes) text += rule(grant, kPublish) + "\n";
+  for (const Grant& grant : grants.subscribes) text += rule(grant, kSubscribe) + "\n";
   return text + "<default>DENY</default></grant></permissions></dds>\n";
+}
+
+bool has_rules(const std::string& document, const Grants& grants) {
+  const auto has = [&](const std::vector<Grant>& all, const char* direction) {
+    return std::ranges::all_of(
+        all, [&](const Grant& grant) { return document.find(rule(grant, direction)) != std::string::npos; });
+  };
+  return has(grants.publishes, kPublish) && has(grants.subscribes, kSubscribe);
 }
 
 }  // namespace aurasim::security

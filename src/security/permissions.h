@@ -18,8 +18,9 @@ enum class Role : std::uint8_t {
   kViewer,    ///< observes the world and the nodes, publishes nothing
   kOperator,  ///< a viewer that may also send commands, and start, pause and stop the run
   kRecorder,  ///< reads everything, publishes nothing
+  kHub,       ///< publishes again what nodes publish to all nodes, in the partition topics::kFromHub
 };
-inline constexpr int kRoleCount = 5;
+inline constexpr int kRoleCount = 6;
 const char* name_of(Role role);
 std::optional<Role> role_named(std::string_view name);
 
@@ -44,5 +45,7 @@ bool is_granted(const std::vector<Grant>& grants, std::string_view topic, const 
 /// Returns the permissions document, XML. It has one rule for each topic and direction, because topics in one rule
 /// would share all its partitions, and of several rules for a topic Fast DDS reads the first only.
 std::string permissions_document(const Subject& subject, const Validity& valid, const Grants& grants);
+/// True if a permissions document has the rules of all these rights.
+bool has_rules(const std::string& document, const Grants& grants);
 
 }  // namespace aurasim::security

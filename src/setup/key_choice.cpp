@@ -67,6 +67,25 @@ std::optional<security::Member> member_for_node(const config::Launch& launch, co
   });
 }
 
+std::string why_no_hub(const config::Launch& launch) {
+  if (launch.dds.security.empty()) return {};
+  return with_bad_keys_told([&]() -> std::string {
+    const security::KeyStore store(launch.dds.security);
+    const std::string folder = store.folder().string();
+    if (!store.first_with({security::Role::kHub})) {
+      return fmt::format("{0} has no key for one: `aurasim keys add {0} hub-1 --role hub` makes it", folder);
+    }
+    std::vector<std::string> old;
+    for (const security::Member& member : store.members()) {
+      if (!store.has_all_rights(member.name)) old.push_back(member.name);
+    }
+    if (old.empty()) return {};
+    return fmt::format(
+        "keys in {} are from a version that had no hubs with keys: `aurasim keys rotate {} {}` makes new ones", folder,
+        folder, fmt::join(old, " "));
+  });
+}
+
 dds::Settings with_keys(dds::Settings settings, const config::Launch& launch,
                         const std::optional<security::Member>& member) {
   if (!member) return settings;
@@ -79,8 +98,8 @@ void make_keys_for_one_host(const std::filesystem::path& folder, std::size_t reg
   with_bad_keys_told([&] {
     security::KeyStore store = security::KeyStore::create(folder, kOneRun);
     for (std::uint32_t r = 0; r < regions; ++r) store.add(security::member_of_region(r), kOneRun);
-    for (const security::Role role :
-         {security::Role::kSpare, security::Role::kViewer, security::Role::kOperator, security::Role::kRecorder}) {
+    for (const security::Role role : {security::Role::kSpare, security::Role::kViewer, security::Role::kOperator,
+                                      security::Role::kRecorder, security::Role::kHub}) {
       store.add({name_of(role), role}, kOneRun);
     }
   });

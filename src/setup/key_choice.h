@@ -20,6 +20,9 @@ std::optional<security::Member> member_for(const config::Launch& launch, const s
 std::optional<security::Member> member_for_node(const config::Launch& launch, const std::string& as,
                                                 core::RegionId region);
 
+/// Why a run with the keys of `launch` cannot have a hub, and what to do. Empty: it can, or it has no keys.
+std::string why_no_hub(const config::Launch& launch);
+
 /// `settings` with the key, once it has been checked. Processes refused later are logged.
 dds::Settings with_keys(dds::Settings settings, const config::Launch& launch,
                         const std::optional<security::Member>& member);

@@ -94,6 +94,11 @@ std::string to_hub(std::string_view partition);
 /// The hub reads partitions whose names begin with kToHub; kEveryPartitionToHub is the pattern of all of them.
 inline constexpr std::string_view kToHub = "hub/";
 inline constexpr const char* kEveryPartitionToHub = "hub/*";
+/// In a run with keys the hub publishes in this partition instead. Only the role `hub` may publish there, so a sample
+/// that comes in it is known to come from the hub.
+inline constexpr const char* kFromHub = "from_hub";
+/// True if the hub passes on messages of this topic, in whatever partition.
+inline bool has_way_by_hub(TopicId topic) { return goes_by_hub(topic, kWorldPartition); }
 
 /// Returns all partitions in which a topic is published before the first death or change, in a run of `regions`
 /// regions. Those for observers are a pattern for each region.

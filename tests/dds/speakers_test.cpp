@@ -57,6 +57,17 @@ TEST_F(WhoMaySpeak, AWriterThatSpeaksByAHubIsAtHomeInItsRegion) {
   EXPECT_FALSE(speakers_.is_at_home(endpoint(kNode), RegionId{2}));
 }
 
+TEST_F(WhoMaySpeak, AWriterThatMovesToThePartitionOfAnotherRegionIsAtHomeInNone) {
+  speakers_.add(endpoint(kNode), {"region/1"});
+  speakers_.add(endpoint(kNode), {"region/1"});
+  EXPECT_TRUE(speakers_.is_at_home(endpoint(kNode), RegionId{1}));
+  for (const char* partition : {"region/2", "region/1"}) {
+    speakers_.add(endpoint(kNode), {partition});
+    EXPECT_FALSE(speakers_.is_at_home(endpoint(kNode), RegionId{1})) << partition;
+    EXPECT_FALSE(speakers_.is_at_home(endpoint(kNode), RegionId{2})) << partition;
+  }
+}
+
 TEST_F(WhoMaySpeak, AHubIsKnownUntilItIsGone) {
   const ProcessPrefix first = endpoint(7).guidPrefix, second = endpoint(8).guidPrefix;
   EXPECT_FALSE(speakers_.has_hub());

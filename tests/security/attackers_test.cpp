@@ -9,9 +9,12 @@
 
 #include <gtest/gtest.h>
 
+#include "aurasim.h"
 #include "dds/command_bus.h"
 #include "dds/control.h"
 #include "dds/endpoints.h"
+#include "dds/hub.h"
+#include "dds/introductions.h"
 #include "forged_permissions.h"
 #include "own_domain.h"
 #include "scratch_store.h"
@@ -52,8 +55,8 @@ bool wait_until(Condition&& condition, Clock::duration time_out = kGenerous) {
 /// What a node has, as far as attackers ask for it.
 class Node {
  public:
-  explicit Node(const KeyFiles& keys) {
-    Settings settings = settings_for(keys);
+  explicit Node(const KeyFiles& keys) : Node(settings_for(keys)) {}
+  explicit Node(Settings settings) {
     settings.report_refusal = [this](const std::string& text) {
       const std::lock_guard lock(mutex_);
       refusals_.push_back(text);
@@ -62,6 +65,7 @@ class Node {
     commands.emplace(*domain, on(TopicId::kCommand), wakeup);
     run_control.emplace(*domain, on(TopicId::kRunControl), wakeup);
     auras.emplace(*domain, on(TopicId::kAura), wakeup);
+    statuses.emplace(*domain, on(TopicId::kNodeStatus), wakeup);
     hand_offs.emplace(*domain, EndpointSpec{TopicId::kMigration, {"region/2/to/1"}, {}, {}}, wakeup);
   }
 
@@ -82,14 +86,15 @@ class Node {
  public:
   Wakeup wakeup;
   std::optional<Domain> domain;
-  std::optional<Reader> commands, run_control, auras;
+  std::optional<Reader> commands, run_control, auras, statuses;
   std::optional<Writer> hand_offs;
 };
 
 /// Tries everything.
 class Peer {
  public:
-  explicit Peer(const std::optional<KeyFiles>& keys) : domain(settings_for(keys)) {}
+  explicit Peer(const std::optional<KeyFiles>& keys) : Peer(settings_for(keys)) {}
+  explicit Peer(const Settings& settings) : domain(settings) {}
 
   Writer& says(TopicId topic, const std::string& partition) {
     writers_.push_back(std::make_unique<Writer>(domain, EndpointSpec{topic, {partition}, {}, {}}, wakeup));
@@ -228,6 +233,145 @@ TEST_F(Attackers, OfRegion1DoNotSpeakAsRegion2) {
   EXPECT_EQ(node.auras->watch().writers().size(), 1U);
   EXPECT_TRUE(node.has_refused("CN=region-1", "region/2 partition not found in rule"))
       << ::testing::PrintToString(node.refusals());
+}
+
+/// A process of no key at all that says that it is a hub, so that others look for one.
+Settings calls_itself_a_hub() {
+  Settings settings = settings_for({});
+  settings.discovery = config::Discovery::kNeighbours;
+  settings.introductions = std::make_shared<Introductions>();
+  return settings;
+}
+
+/// A status of `region`, of a writer that passes it on for another one.
+void pass_on_status(Writer& writer, std::uint32_t region) {
+  auto status = std::make_shared<wire::NodeStatus>();
+  status->source(region);
+  PassedSample passed;
+  passed.sample = status;
+  passed.writer.guidPrefix.value[0] = 77;
+  passed.number = 1;
+  ASSERT_NE(writer.pass_on(passed), WriteResult::kFailed);
+}
+
+struct Heard {
+  std::uint32_t region = 0;
+  Origin origin;
+};
+
+/// The next status that the node hears; nothing: none has come.
+std::optional<Heard> take_status(Node& node, Clock::duration time_out = kGenerous) {
+  Heard heard;
+  wire::NodeStatus status;
+  if (!wait_until([&] { return node.statuses->take(&status, &heard.origin); }, time_out)) return std::nullopt;
+  heard.region = status.source();
+  return heard;
+}
+
+TEST_F(Attackers, OfNoRoleButAHubsSpeakAsAHub) {
+  store().add({"spare", Role::kSpare}, kValid);
+  store().add({"tape", Role::kRecorder}, kValid);
+  store().add({"hub-1", Role::kHub}, kValid);
+  Node node(keys_of("region-2"));
+  Peer stranger(calls_itself_a_hub());
+  std::vector<std::unique_ptr<Peer>> attackers;
+  std::vector<Writer*> writers;
+  for (const char* name : {"region-1", "spare", "desk", "hall", "tape"}) {
+    attackers.push_back(peer_without_scruples(name));
+    for (const char* partition : {"from_hub", "from_*", "*"}) {
+      writers.push_back(&attackers.back()->says(TopicId::kNodeStatus, partition));
+    }
+  }
+  Peer hub(keys_of("hub-1"));
+  Writer& of_hub = hub.says(TopicId::kNodeStatus, "from_hub");
+  ASSERT_TRUE(wait_until([&] {
+    wire::NodeStatus status;
+    node.statuses->take(&status);  // looks for a hub
+    return of_hub.reader_count() > 0 && node.domain->speakers().has_hub();
+  }));
+  std::this_thread::sleep_for(kLongEnough);
+  for (const Writer* writer : writers) EXPECT_EQ(writer->reader_count(), 0U);
+  for (const char* name : {"CN=region-1", "CN=spare"}) {
+    EXPECT_TRUE(node.has_refused(name, "from_hub partition not found in rule")) << name;
+  }
+  for (const char* name : {"CN=desk", "CN=hall"}) {
+    EXPECT_TRUE(node.has_refused(name, "node_status topic not found in allow rule")) << name;
+  }
+  pass_on_status(of_hub, 5);
+  const auto heard = take_status(node);
+  ASSERT_TRUE(heard.has_value());
+  EXPECT_TRUE(heard->origin.by_hub);
+  EXPECT_EQ(heard->origin.writer.guidPrefix.value[0], 77);
+}
+
+/// Fast DDS keeps the match that the former partition has made.
+TEST_F(Attackers, WhoMoveToThePartitionOfAHubOrOfAnotherRegionSpeakForThemselves) {
+  Node node(keys_of("region-2"));
+  Peer stranger(calls_itself_a_hub());
+  const std::unique_ptr<Peer> neighbour = peer_without_scruples("region-1");
+  for (const char* to : {"from_hub", "region/0"}) {
+    SCOPED_TRACE(to);
+    eprosima::fastdds::dds::PublisherQos qos;
+    qos.partition().push_back("region/1");
+    auto* const publisher = neighbour->domain.participant().create_publisher(qos);
+    auto* const writer =
+        publisher->create_datawriter(&neighbour->domain.topic(TopicId::kNodeStatus),
+                                     neighbour->domain.profiles().writer(*publisher, "node_status_writer"));
+    ASSERT_NE(writer, nullptr);
+    wire::NodeStatus status;
+    ASSERT_TRUE(wait_until([&] {
+      node.statuses->take(&status);
+      return node.statuses->watch().any_matched(writer->guid().guidPrefix);
+    }));
+    qos.partition().clear();
+    qos.partition().push_back(to);
+    publisher->set_qos(qos);
+    std::this_thread::sleep_for(kLongEnough);  // until everybody knows
+    eprosima::fastrtps::rtps::WriteParams params;
+    params.related_sample_identity().writer_guid().guidPrefix.value[0] = 77;
+    params.related_sample_identity().sequence_number({0, 1});
+    status.source(0);
+    writer->write(&status, params);
+    const auto heard = take_status(node, kLongEnough);
+    if (heard) {
+      EXPECT_FALSE(heard->origin.by_hub);
+      EXPECT_EQ(heard->origin.writer, writer->guid());
+      EXPECT_FALSE(node.domain->speakers().is_at_home(heard->origin.writer, core::RegionId{0}));
+    }
+    RecordProperty(to, heard ? "heard" : "not heard");
+  }
+}
+
+TEST_F(Attackers, OfRegion1SayNothingOfRegion2ThroughAHub) {
+  store().add({"hub-1", Role::kHub}, kValid);
+  const auto by_hub = [&](const char* name) {
+    Settings settings = settings_for(keys_of(name));
+    settings.discovery = config::Discovery::kNeighbours;
+    return settings;
+  };
+  Hub hub(by_hub("hub-1"));
+  std::jthread turning([&](const std::stop_token& stop) {
+    while (!stop.stop_requested()) hub.turn(20ms);
+  });
+  Node node(by_hub("region-2"));
+  Peer neighbour(by_hub("region-1"));
+  Writer& status = neighbour.says(TopicId::kNodeStatus, "region/1");  // that is hub/region/1
+  ASSERT_TRUE(wait_until([&] { return status.reader_count() == 1 && node.domain->has_way_to_all(); }));
+  wire::NodeStatus of_another, own;
+  of_another.source(2);
+  own.source(1);
+  status.write(&of_another);
+  status.write(&own);
+  const auto heard = take_status(node);
+  ASSERT_TRUE(heard.has_value());
+  EXPECT_EQ(heard->region, 1U);
+  EXPECT_TRUE(heard->origin.by_hub);
+  EXPECT_EQ(heard->origin.writer, status.guid());
+  EXPECT_FALSE(take_status(node, 300ms).has_value());
+  turning.request_stop();
+  turning.join();
+  EXPECT_EQ(hub.counts().refused, 1U);
+  EXPECT_EQ(hub.counts().passed, 1U);
 }
 
 TEST_F(Attackers, WhoAreOperatorsAreGivenNoMoreThanAnybodyElse) {

@@ -15,7 +15,7 @@ thread_local std::string forged;
 ForgedPermissions::ForgedPermissions(const Member& member) {
   const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
   Grants all;
-  for (const char* topic : {"aura", "migration", "command", "run_control"}) {
+  for (const char* topic : {"aura", "migration", "command", "run_control", "node_status"}) {
     all.publishes.push_back({topic, {"*"}});
     all.subscribes.push_back({topic, {"*"}});
   }

@@ -166,6 +166,21 @@ TEST_F(Keys, WithPermissionsThatSomebodyHasChangedAreRefused) {
   EXPECT_THAT(refusal_of_region_2(), AllOf(HasSubstr("permissions.p7s"), HasSubstr("verify")));
 }
 
+TEST_F(Keys, OfAnEarlierVersionAreKnownByTheRightsThatTheyLack) {
+  EXPECT_TRUE(store().has_all_rights("region-2"));
+  const Certificate certificate = read_certificate(text_of(of_region_2("certificate.pem")));
+  Grants before = grants_of(Role::kRegion, 2);
+  for (Grant& grant : before.subscribes) std::erase(grant.partitions, "from_hub");
+  const KeyPair authority{text_of(file("private/permissions_ca.key.pem")), text_of(file("permissions_ca.pem"))};
+  replace(of_region_2("permissions.p7s"),
+          sign(authority, permissions_document(certificate.subject, certificate.valid, before)));
+  EXPECT_EQ(refusal_of_region_2(), "") << "they are good for a run without a hub";
+  EXPECT_FALSE(store().has_all_rights("region-2"));
+  EXPECT_FALSE(store().check().front().has_all_rights);
+  store().rotate("region-2", kValid);
+  EXPECT_TRUE(store().has_all_rights("region-2"));
+}
+
 TEST_F(Keys, AreNotMadeTwice) {
   EXPECT_THAT(refusal([&] { store().add(member_of_region(2), kValid); }), HasSubstr("rotate"));
   EXPECT_THAT(refusal([&] { KeyStore::create(store().folder(), kValid); }), HasSubstr("exists"));

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "scratch_store.h"
+#include "topics/topics.h"
 
 namespace aurasim::security {
 namespace {
@@ -64,6 +65,69 @@ TEST(ASpare, SpeaksForTheRegionThatItTakesOver) {
   }
   EXPECT_TRUE(may_read(Role::kSpare, 0, "checkpoint", "world"));
   EXPECT_FALSE(may_say(Role::kSpare, 0, "command", "world"));
+}
+
+TEST(ANode, SpeaksToTheHubInItsOwnName) {
+  EXPECT_TRUE(may_say(Role::kRegion, 2, "node_status", "hub/region/2"));
+  for (const char* partition : {"hub/region/1", "hub/region/*", "hub/*", "hub/world"}) {
+    EXPECT_FALSE(may_say(Role::kRegion, 2, "node_status", partition)) << partition;
+  }
+  for (const char* topic : {"region_map", "run_control", "checkpoint"}) {
+    EXPECT_TRUE(may_say(Role::kRegion, 2, topic, "hub/world")) << topic;
+    EXPECT_FALSE(may_say(Role::kRegion, 2, topic, "hub/*")) << topic;
+  }
+  EXPECT_FALSE(may_say(Role::kRegion, 2, "checkpoint", "hub/region/2/to/1"));
+  EXPECT_TRUE(may_say(Role::kSpare, 0, "node_status", "hub/region/7"));
+}
+
+TEST(AHub, PassesOnWhatNodesSayToAllAndNothingElse) {
+  for (const topics::Topic& topic : topics::all()) {
+    const bool goes_by_hub = topics::has_way_by_hub(topic.id);
+    EXPECT_EQ(may_say(Role::kHub, 0, topic.name, "from_hub"), goes_by_hub) << topic.name;
+    EXPECT_EQ(may_read(Role::kHub, 0, topic.name, "hub/*"), goes_by_hub) << topic.name;
+    for (const char* partition : {"world", "region/0", "region/*", "region/0/to/1", "hub/world", "*"}) {
+      EXPECT_FALSE(may_say(Role::kHub, 0, topic.name, partition)) << topic.name << " " << partition;
+    }
+    for (const char* partition : {"world", "region/0", "region/*", "region/0/to/1", "*"}) {
+      EXPECT_FALSE(may_read(Role::kHub, 0, topic.name, partition)) << topic.name << " " << partition;
+    }
+  }
+  for (const char* topic : {"node_status", "region_map", "run_control", "checkpoint"}) {
+    EXPECT_TRUE(may_say(Role::kHub, 0, topic, "from_hub")) << topic;
+  }
+}
+
+/// What comes in that partition counts as the word of whom the hub names.
+TEST(NobodyButAHub, PublishesWhereTheHubPublishes) {
+  for (int i = 0; i < kRoleCount; ++i) {
+    const Role role = static_cast<Role>(i);
+    if (role == Role::kHub) continue;
+    for (const topics::Topic& topic : topics::all()) {
+      for (const char* partition : {"from_hub", "from_*", "?rom_hub", "[f]rom_hub", "*", "*hub", "f*", ""}) {
+        EXPECT_FALSE(may_say(role, 2, topic.name, partition)) << name_of(role) << " " << topic.name << " " << partition;
+      }
+    }
+  }
+}
+
+TEST(WhatTheHubPassesOn, IsReadByThoseWhoReadTheTopic) {
+  for (const Role role : {Role::kRegion, Role::kSpare, Role::kViewer, Role::kOperator, Role::kRecorder}) {
+    for (const char* topic : {"node_status", "region_map"}) EXPECT_TRUE(may_read(role, 2, topic, "from_hub")) << topic;
+  }
+  EXPECT_TRUE(may_read(Role::kOperator, 0, "run_control", "from_hub"));
+  EXPECT_TRUE(may_say(Role::kOperator, 0, "run_control", "hub/world"));
+  EXPECT_FALSE(may_read(Role::kViewer, 0, "run_control", "from_hub"));
+  EXPECT_FALSE(may_read(Role::kOperator, 0, "checkpoint", "from_hub"));
+  EXPECT_FALSE(may_read(Role::kViewer, 0, "node_status", "hub/region/2"));
+}
+
+TEST(PermissionsDocument, OfAnEarlierVersionLacksRights) {
+  const Validity valid{};
+  Grants grants = grants_of(Role::kRegion, 2);
+  EXPECT_TRUE(has_rules(permissions_document({}, valid, grants), grants));
+  Grants before = grants;
+  for (Grant& grant : before.subscribes) std::erase(grant.partitions, topics::kFromHub);
+  EXPECT_FALSE(has_rules(permissions_document({}, valid, before), grants));
 }
 
 TEST(AViewer, SaysOnlyWhatItWantsToSee) {
@@ -146,7 +210,7 @@ TEST(PermissionsDocument, HasOneRuleForEachTopicAndDirection) {
   ScratchStore scratch;
   const std::chrono::days valid{10};
   scratch.store.add(member_of_region(2), valid);
-  for (const Role role : {Role::kSpare, Role::kViewer, Role::kOperator, Role::kRecorder}) {
+  for (const Role role : {Role::kSpare, Role::kViewer, Role::kOperator, Role::kRecorder, Role::kHub}) {
     scratch.store.add({name_of(role), role}, valid);
   }
   const std::string authority = text_of(scratch.store.folder() / "permissions_ca.pem");

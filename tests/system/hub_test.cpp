@@ -109,6 +109,99 @@ TEST_F(AHub, BringsThoseWhoKnowNothingOfItToTheNodes) {
   expect_all_bodies_accounted_for(report_of("met"));
 }
 
+/// Six regions in a run with keys, which are in a folder.
+class AHubWithKeys : public AHub {
+ protected:
+  std::string keys() const { return (folder() / "keys").string(); }
+  /// Keys for all but a hub.
+  void make_keys() {
+    expect_exit(start({"keys", "init", keys()}), 0);
+    expect_exit(start({"keys", "add-region", keys(), "0-5"}), 0);
+    for (const char* role : {"operator", "viewer"}) add_key(role);
+  }
+  void add_key(const std::string& role) { expect_exit(start({"keys", "add", keys(), role, "--role", role}), 0); }
+  Words with_keys() const { return set({"dds.security=" + keys()}); }
+};
+
+TEST_F(AHubWithKeys, LeadsToTheSameBits) {
+  const Words steps = {"--steps", "300"};
+  const std::string by_hub = hashes("by_hub", Words{"--secure"} + steps + kByHub + kSix);
+  EXPECT_GT(report_of("by_hub").count("migrations"), 50);
+  const std::string central =
+      hashes("central", steps + set({"regions.count=1", "time.sync=deterministic", "time.pace=none"}));
+  EXPECT_EQ(first_difference(by_hub, central), "");
+}
+
+TEST_F(AHubWithKeys, ThatIsKilledIsStartedAgainAndClientsFindTheRun) {
+  make_keys();
+  add_key("hub");
+  const std::string demo = launch_file("demo");
+  const Words its = set({"time.sync=deterministic"}) + kSix + with_keys();
+  Process& run = launch("killed", demo, Words{"--steps", "900"} + set({"dds.discovery=neighbours"}) + its);
+  ASSERT_NO_FATAL_FAILURE(expect_reaches(report_of("killed"), 6, 60));
+  const pid_t first = hub_of(run);
+  ASSERT_NE(first, 0);
+  ASSERT_EQ(::kill(first, SIGKILL), 0);
+  ASSERT_TRUE(wait_until([&] { return hub_of(run) != 0 && hub_of(run) != first; }, kGenerous));
+  Process& echo = start(Words{"echo", "node_status", demo, "--count", "12", "--as", "viewer"} + in_own_domain() +
+                        its);  // by multicast
+  expect_exit(echo, 0);
+  for (const char* command : {"pause", "resume"}) {
+    expect_exit(start(Words{"send", command, demo} + in_own_domain() + its), 0);
+  }
+  expect_exit(run, 0);
+  EXPECT_THAT(run.err(), ::testing::Not(::testing::HasSubstr("died")));
+  expect_all_bodies_accounted_for(report_of("killed"));
+  const std::string central = hashes(
+      "central", Words{"--steps", "900"} + set({"regions.count=1", "time.pace=none", "time.sync=deterministic"}));
+  EXPECT_EQ(first_difference(report_of("killed").state_hash(), central), "");
+}
+
+TEST_F(AHubWithKeys, LetsARegionBeTakenOverWhoseNodeDies) {
+  Process& run =
+      launch("died", launch_file("demo"),
+             Words{"--secure", "--steps", "600"} + set({"dds.discovery=neighbours", "time.sync=deterministic"}) + kSix);
+  ASSERT_NO_FATAL_FAILURE(expect_reaches(report_of("died"), 6, 120));
+  ASSERT_NO_FATAL_FAILURE(kill_node(run, 2));
+  expect_exit(run, 0);
+  expect_all_bodies_accounted_for(report_of("died"));
+}
+
+TEST_F(AHubWithKeys, IsNobodyWhoHasNotItsKey) {
+  make_keys();
+  const std::string demo = launch_file("demo");
+  const Words neighbours = set({"dds.discovery=neighbours"});
+  for (const char* name : {"region-1", "operator", "viewer"}) {
+    Process& hub = start(Words{"hub", demo, "--as", name} + in_own_domain() + neighbours + with_keys());
+    expect_exit(hub, 2);
+    EXPECT_THAT(hub.err(), ::testing::HasSubstr("allowed for this: hub"));
+  }
+  Process& without = launch("without", demo, neighbours + kSix + with_keys());
+  expect_exit(without, 2);
+  EXPECT_THAT(without.err(), ::testing::HasSubstr("hub-1 --role hub"));
+}
+
+TEST_F(AHubWithKeys, HearsNoStrangerAndStrangersHearNothing) {
+  const std::string demo = launch_file("demo");
+  const Words neighbours = set({"dds.discovery=neighbours"});
+  Process& stranger = start(Words{"hub", demo} + in_own_domain() + neighbours);
+  Process& listener = start(Words{"echo", "node_status", demo} + in_own_domain());
+  Process& run = launch("run", demo, Words{"--secure", "--steps", "200"} + kByHub + kSix);
+  expect_exit(run, 0);
+  expect_all_bodies_accounted_for(report_of("run"));
+  EXPECT_EQ(listener.out(), "");
+  EXPECT_FALSE(stranger.wait(0ms)) << stranger.said();
+}
+
+TEST_F(AHubWithKeys, IsThereByDefaultWhereThereAreManyNodes) {
+  Process& run = launch("many", launch_file("demo"),
+                        Words{"--secure", "--steps", "20"} + set({"regions={layout: columns, count: 17, width: 6}"}));
+  EXPECT_TRUE(wait_until([&] { return hub_of(run) != 0 || run.wait(0ms); }, kGenerous));
+  EXPECT_NE(hub_of(run), 0);
+  expect_exit(run, 0);
+  expect_all_bodies_accounted_for(report_of("many"));
+}
+
 TEST_F(AHub, IsThereByDefaultWhereThereAreManyNodes) {
   Process& run = launch("many", launch_file("demo"),
                         Words{"--steps", "20"} + set({"regions={layout: columns, count: 17, width: 6}"}));
