@@ -8,8 +8,6 @@ namespace aurasim::config {
 
 /// Above this number of nodes a start with a hub takes less time than one without (docs/decisions/0052).
 inline constexpr std::size_t kMostNodesWithoutHub = 16;
-/// The same for a run with keys.
-inline constexpr std::size_t kMostNodesWithoutHubWithKeys = 16;
 
 enum class Discovery : std::uint8_t {
   kAuto,        ///< as kMulticast; `launch` gives a run of many nodes on one host a hub, as with kNeighbours

@@ -25,6 +25,9 @@
 namespace aurasim::dds {
 namespace {
 
+/// Time that the samples of a gone writer stay. Readers on a busy host have received them by then.
+constexpr std::chrono::seconds kUntilRead{5};
+
 /// A UDP socket of the hub's own: its participant has no way to send a datagram of somebody else.
 class Socket {
  public:
@@ -126,8 +129,9 @@ struct Lane {
   Reader reader;
   Writer writer;
   KeptSamples kept;
-  std::uint64_t seen_changes = 0;       ///< of the reader's watch
-  std::uint64_t newest_generation = 0;  ///< of checkpoints
+  std::uint64_t seen_changes = 0;                                   ///< of the reader's watch
+  std::optional<std::chrono::steady_clock::time_point> forgets_at;  ///< when the gone are forgotten; nothing: nobody is
+  std::uint64_t newest_generation = 0;                              ///< of checkpoints
 };
 
 }  // namespace
@@ -180,9 +184,14 @@ bool Hub::Impl::speaks_for_itself(const PassedSample& status) {
   return region == core::RegionId{static_cast<const wire::NodeStatus*>(status.sample.get())->source()};
 }
 
-/// A sample of a writer that is gone reaches nobody who joins later, as if the writer itself had published to all.
+/// A sample of a writer that is gone reaches nobody who joins later, as if the writer itself had published to all. It
+/// stays for a while, since those who are there may not have it yet.
 void Hub::Impl::forget_the_gone(Lane& lane) {
-  if (std::exchange(lane.seen_changes, lane.reader.watch().changes()) == lane.reader.watch().changes()) return;
+  const auto now = std::chrono::steady_clock::now();
+  const std::uint64_t changes = lane.reader.watch().changes();
+  if (std::exchange(lane.seen_changes, changes) != changes) lane.forgets_at = now + kUntilRead;
+  if (!lane.forgets_at || now < *lane.forgets_at) return;
+  lane.forgets_at.reset();
   std::set<Guid> live;
   for (const RemoteWriter& writer : lane.reader.watch().writers()) {
     if (writer.matched) live.insert(writer.guid);

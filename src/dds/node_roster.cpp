@@ -89,7 +89,7 @@ void NodeRoster::note(messages::Status fresh, const Origin& origin) {
   std::vector<Received>& of_region = received_[fresh.region];
   auto found = std::ranges::find(of_region, origin.writer, &Received::writer);
   if (found == of_region.end()) {
-    found = of_region.insert(found, {origin.writer, origin.by_hub, {}, {}});
+    found = of_region.insert(found, {origin.writer, origin.by_hub, {}, {}, {}});
   }
   found->seen.status = std::move(fresh);
   found->seen.seen = std::chrono::steady_clock::now();
@@ -114,6 +114,7 @@ void NodeRoster::look_at(RegionId region, std::vector<Received>& of_region, cons
   for (Received& one : of_region) {
     if (claimed_.contains(one.seen.status.process) && shows_no_life(one)) dead_.insert(one.seen.status.process);
     one.seen.dead = dead_.contains(one.seen.status.process);
+    if (one.by_hub && !shows_no_life(one)) one.alive = std::chrono::steady_clock::now();
     one.seen.lost = one.seen.dead || is_lost(one, find(writers, one.writer));
   }
   if (is_region(region)) choose_publisher(region, of_region);
@@ -138,7 +139,10 @@ void NodeRoster::choose_publisher(RegionId region, const std::vector<Received>& 
 }
 
 bool NodeRoster::is_lost(const Received& one, const RemoteWriter* writer) const {
-  if (one.by_hub) return shows_no_life(one);
+  if (one.by_hub) {
+    const auto grace = settings_.stays_on_this_host ? settings_.until_last_word : std::chrono::nanoseconds(0);
+    return shows_no_life(one) && std::chrono::steady_clock::now() >= one.alive + grace;
+  }
   if (writer == nullptr || writer->lost) return true;
   return !settings_.believes_silence && writer->silent_since && shows_no_life(one);
 }

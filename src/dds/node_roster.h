@@ -25,6 +25,9 @@ struct RosterSettings {
   Guid writer;                                  ///< the own writer of statuses; only with a region
   bool stays_on_this_host = false;              ///< all processes of the run are on this host, so they can be looked up
   bool believes_silence = true;  ///< if false, a silent process is lost only when there is no such process any more
+  /// A process of this host whose statuses come by a hub, and that has been alive, counts as lost so long after its
+  /// end. Its last word, that it has finished, may come from the hub that late on a busy host.
+  std::chrono::nanoseconds until_last_word = std::chrono::seconds(2);
 };
 
 /// Used by one thread. `speakers` must outlive it.
@@ -68,6 +71,7 @@ class NodeRoster {
     Guid writer;
     bool by_hub = false;  ///< then DDS here says nothing of the writer
     messages::SeenStatus seen;
+    std::chrono::steady_clock::time_point alive{};     ///< the last look that showed life; by_hub only
     std::deque<std::chrono::nanoseconds> clock_ahead;  ///< estimates from the last samples
   };
 

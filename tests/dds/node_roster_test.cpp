@@ -1,7 +1,11 @@
 // When a look at the roster shows something new, without DDS.
 #include "dds/node_roster.h"
 
+#include <csignal>
+#include <thread>
+
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 namespace aurasim::dds {
@@ -87,6 +91,37 @@ TEST_F(ARoster, KnowsWhoLivesByItsProcessWhereAStatusCameByAHub) {
   roster.look({});
   EXPECT_FALSE(roster.statuses().at(RegionId{1}).lost) << "no writer of it is matched here, and the hub may be gone";
   EXPECT_TRUE(roster.statuses().at(RegionId{2}).lost) << "there is no such process";
+}
+
+TEST_F(ARoster, WaitsForTheLastWordOfAProcessThatHasEndedWhereItComesByAHub) {
+  RosterSettings here = settings();
+  here.stays_on_this_host = true;
+  here.until_last_word = std::chrono::milliseconds(200);
+  NodeRoster roster(here, speakers_);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::pause();
+    ::_exit(0);
+  }
+  messages::Status status;
+  status.region = RegionId{1};
+  status.process = 7;
+  status.pid = static_cast<std::uint32_t>(child);
+  Origin origin;
+  origin.writer = writer_of(7);
+  origin.by_hub = true;
+  roster.note(status, origin);
+  roster.look({});
+  const auto alive = std::chrono::steady_clock::now();
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+  roster.look({});
+  if (std::chrono::steady_clock::now() < alive + here.until_last_word / 2) {
+    EXPECT_FALSE(roster.statuses().at(RegionId{1}).lost) << "its last status may be on its way";
+  }
+  std::this_thread::sleep_for(here.until_last_word);
+  roster.look({});
+  EXPECT_TRUE(roster.statuses().at(RegionId{1}).lost);
 }
 
 TEST_F(ARoster, LooksAtAllAfterADeath) {
