@@ -70,10 +70,14 @@ void look_at_keys(const config::Launch& launch) {
   }
 }
 
+/// Above this number of nodes a start with keys takes less time with a hub (docs/decisions/0055). Each pair of
+/// processes that meet proves who they are, so it is less than config::kMostNodesWithoutHub.
+constexpr std::size_t kMostNodesWithoutHubWithKeys = 9;
+
 /// Gives a run of many nodes on this host a hub, unless the launch file says how they find each other.
 config::Launch with_hub(config::Launch launch, command_line::FileArguments& files) {
   const std::size_t most_without =
-      launch.dds.security.empty() ? config::kMostNodesWithoutHub : config::kMostNodesWithoutHubWithKeys;
+      launch.dds.security.empty() ? config::kMostNodesWithoutHub : kMostNodesWithoutHubWithKeys;
   if (launch.dds.discovery != config::Discovery::kAuto || launch.regions.size() <= most_without ||
       !config::is_on_loopback(launch.dds)) {
     return launch;

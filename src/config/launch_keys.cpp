@@ -167,7 +167,7 @@ const KeysOf<Dds>& dds_keys() {
               "multicast; peers: announcements go to the addresses in `peers`; server: Fast DDS discovery servers "
               "at `peers`; neighbours: a hub (`aurasim hub`; `launch` starts one) introduces the nodes that need each "
               "other, for many nodes on one host; auto: multicast, but `launch` uses neighbours for more than 16 nodes "
-              "on loopback without keys"),
+              "on loopback, with keys for more than 9"),
           optional("interfaces", &Dds::interfaces, list(1, 256, text("an address")),
                    "own addresses that may carry traffic; [\"*\"]: all of them. The default never leaves the machine"),
           optional("peers", &Dds::peers, list(1, 256, text("an address")),

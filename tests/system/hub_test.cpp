@@ -195,7 +195,7 @@ TEST_F(AHubWithKeys, HearsNoStrangerAndStrangersHearNothing) {
 
 TEST_F(AHubWithKeys, IsThereByDefaultWhereThereAreManyNodes) {
   Process& run = launch("many", launch_file("demo"),
-                        Words{"--secure", "--steps", "20"} + set({"regions={layout: columns, count: 17, width: 6}"}));
+                        Words{"--secure", "--steps", "20"} + set({"regions={layout: columns, count: 10, width: 8}"}));
   EXPECT_TRUE(wait_until([&] { return hub_of(run) != 0 || run.wait(0ms); }, kGenerous));
   EXPECT_NE(hub_of(run), 0);
   expect_exit(run, 0);
