@@ -5,6 +5,7 @@
 
 #include "physics/bullet_convert.h"
 #include "physics/moving_body.h"
+#include "physics/prefetch.h"
 
 namespace aurasim::physics {
 namespace {
@@ -81,11 +82,16 @@ void BodyTable::insert(std::vector<HostedBody> arrivals) {
   number_from(static_cast<std::size_t>(first_moved));
 }
 
-void BodyTable::erase(const std::vector<bool>& leaving) {
-  const auto first_left = static_cast<std::size_t>(std::find(leaving.begin(), leaving.end(), true) - leaving.begin());
+void BodyTable::erase(std::span<const std::uint32_t> leaving) {
+  if (leaving.empty()) return;
+  const std::size_t first_left = leaving.front();
   std::size_t kept = first_left;
   for (std::size_t i = first_left; i < bodies_.size(); ++i) {
-    if (!leaving[i]) bodies_[kept++] = std::move(bodies_[i]);
+    if (leaving.empty() || i != leaving.front()) {
+      bodies_[kept++] = std::move(bodies_[i]);
+    } else {
+      leaving = leaving.subspan(1);
+    }
   }
   bodies_.resize(kept);
   if (bodies_.capacity() > kFew + 2 * kept) bodies_.shrink_to_fit();  // as when the node of a region drops all others
@@ -93,7 +99,11 @@ void BodyTable::erase(const std::vector<bool>& leaving) {
 }
 
 void BodyTable::number_from(std::size_t first) {
-  for (std::size_t i = first; i < bodies_.size(); ++i) bodies_[i].rigid->setUserIndex(static_cast<int>(i));
+  constexpr auto kAhead = static_cast<std::size_t>(kPrefetchDistance);
+  for (std::size_t i = first; i < bodies_.size(); ++i) {
+    if (i + kAhead < bodies_.size()) prefetch_flags(*bodies_[i + kAhead].rigid);
+    bodies_[i].rigid->setUserIndex(static_cast<int>(i));
+  }
 }
 
 }  // namespace aurasim::physics

@@ -46,8 +46,8 @@ class BodyTable {
 
   /// Adds bodies. Precondition: none of them is here yet.
   void insert(std::vector<HostedBody> arrivals);
-  /// Destroys each body whose entry in `leaving` is true. `leaving` has one entry per body of the table.
-  void erase(const std::vector<bool>& leaving);
+  /// Destroys the bodies at these places, which ascend.
+  void erase(std::span<const std::uint32_t> leaving);
 
  private:
   void number_from(std::size_t first);

@@ -1,6 +1,8 @@
 // A Bullet world that is set up for equal bits (docs/design.md, "The same bits"), behind a small interface.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <utility>
@@ -16,6 +18,7 @@
 #include "physics/prefetch.h"
 #include "physics/settings.h"
 #include "physics/sleeping_pairs.h"
+#include "physics/soft/touch.h"
 
 class btRigidBody;
 class btTypedConstraint;
@@ -73,6 +76,29 @@ class DynamicsWorld {
   void for_each_contact(Visit&& visit) const {
     for_each_touching(manifolds(), [&](const btPersistentManifold& manifold) { visit(ContactView(manifold)); });
     sleeping_pairs().for_each_contact(visit);
+  }
+
+  /// Calls `visit(ContactView, i, j)` for each contact of `bodies`, in no order. `i`, `j`: which of `bodies` its first and
+  /// its second body are; bodies.size(): none. Costs nothing for other sleepers.
+  template <class Visit>
+  void for_each_contact(std::span<const btRigidBody* const> bodies, Visit&& visit) const {
+    std::vector<std::pair<const btCollisionObject*, std::size_t>> index;
+    for (std::size_t i = 0; i < bodies.size(); ++i) index.emplace_back(bodies[i], i);
+    std::ranges::sort(index);
+    const auto index_of = [&](const btCollisionObject& object) {
+      const auto found = std::ranges::lower_bound(index, &object, {}, [](const auto& entry) { return entry.first; });
+      return found != index.end() && found->first == &object ? found->second : bodies.size();
+    };
+    for_each_touching(manifolds(), [&](const btPersistentManifold& manifold) {
+      const std::size_t i = index_of(*manifold.getBody0()), j = index_of(*manifold.getBody1());
+      if (i < bodies.size() || j < bodies.size()) visit(ContactView(manifold), i, j);
+    });
+    for (std::size_t of = 0; of < bodies.size(); ++of) {
+      sleeping_pairs().for_each_contact(slot_of(*bodies[of]), [&](const ContactView& contact) {
+        const std::size_t i = index_of(contact.body0()), j = index_of(contact.body1());
+        if (i >= bodies.size() || j >= bodies.size() || std::min(i, j) == of) visit(contact, i, j);
+      });
+    }
   }
 
   /// Makes the manifolds of a pair, even if both bodies sleep, empties them, and lists them in `result`. Others would

@@ -140,26 +140,35 @@ void Simulation::put_in(std::span<const core::BodyRecord> bodies) {
   arrivals.reserve(bodies.size());
   for (const core::BodyRecord& record : bodies) arrivals.push_back(make_body(record));
   refuse_twins(arrivals);
-  table_.insert(std::move(arrivals));
+  insert(std::move(arrivals));
   for (const core::BodyRecord& record : bodies) note_new(record.id);
+}
+
+/// Puts bodies into the table. They wait for insert_born().
+void Simulation::insert(std::vector<HostedBody> arrivals) {
+  for (const HostedBody& body : arrivals) unborn_.push_back(body.id);
+  table_.insert(std::move(arrivals));
   next_birth_ = std::min(next_birth_, step_);  // they have not been asked yet
 }
 
 void Simulation::insert_born() {
   if (step_ < next_birth_) return;
   next_birth_ = std::numeric_limits<core::Step>::max();
-  for (HostedBody& body : table_.bodies()) {
-    if (body.born) continue;
-    if (body.birth > step_) {
-      next_birth_ = std::min(next_birth_, body.birth);
-      continue;
+  core::keep_one_of_each(unborn_);
+  std::size_t near = 0;
+  std::erase_if(unborn_, [&](core::BodyId id) {
+    HostedBody* const body = table_.find(id, near);
+    if (body == nullptr || body->born) return true;  // it has left, and may have come back
+    if (body->birth > step_) {
+      next_birth_ = std::min(next_birth_, body->birth);
+      return false;
     }
-    note_new(body.id);
-    world_.insert(*body.rigid, rank_of(body.id), scene_->prototypes[core::value_of(body.prototype)].collides);
-    body.born = true;
-    if (is_guest(*body.rigid)) continue;
-    joints_.connect(body.id, table_, world_);
-  }
+    note_new(body->id);
+    world_.insert(*body->rigid, rank_of(body->id), scene_->prototypes[core::value_of(body->prototype)].collides);
+    body->born = true;
+    if (!is_guest(*body->rigid)) joints_.connect(body->id, table_, world_);
+    return true;
+  });
 }
 
 void Simulation::join(const core::ClusterState& cluster) {

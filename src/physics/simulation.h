@@ -161,6 +161,7 @@ class Simulation {
   /// Number of states for which other nodes act upon the auras of the present state.
   core::Step foreseen() const { return static_cast<core::Step>(std::ceil(settings_.foresight_s / settings_.step_s)); }
   void put_in(std::span<const core::BodyRecord> bodies);
+  void insert(std::vector<HostedBody> arrivals);
   HostedBody make_body(const core::BodyRecord& record);
   void set_motion(btRigidBody& rigid, const core::BodyRecord& record);
   std::vector<core::BodyRecord> take_out_all_but(std::span<const core::BodyRecord> bodies, core::Step step);
@@ -169,15 +170,20 @@ class Simulation {
   core::ObjectRef ref_of(const btCollisionObject& object) const;
   void restore_contacts(const core::ClusterState& cluster);
   void restore_pair(const core::ClusterState& cluster, std::span<const std::uint32_t> records);
-  std::vector<std::uint32_t> membership(std::span<const std::span<const core::BodyId>> clusters) const;
+  /// A body of a cluster that is to be copied.
+  struct Member {
+    std::uint32_t place;    ///< in the table
+    std::uint32_t cluster;  ///< its number
+  };
+  std::vector<Member> membership(std::span<const std::span<const core::BodyId>> clusters) const;
   struct Copies;
-  Copies copy(const std::vector<std::uint32_t>& cluster_at, std::size_t count, bool whole) const;
+  Copies copy(std::span<const Member> members, std::size_t count, bool whole) const;
   void collect_collisions();
   void collect_contact_impulses();
   void list_contacts();
   void list_changed_contacts();
   void show_state(const HostedBody& body, std::size_t place, double coming_kick_m_s);
-  void erase(const std::vector<bool>& leaving);
+  void erase(std::span<const std::uint32_t> leaving);
   void copy_changes(core::ChangedState& copy);
   void note_moved();
   void free_spare_memory();
@@ -231,7 +237,8 @@ class Simulation {
   StateNotes notes_;
   KeptHash hash_;
   bool will_stop_sleepers_ = false;  ///< the next step may change sleepers
-  core::Step next_birth_ = 0;        ///< no body is born before
+  std::vector<core::BodyId> unborn_;  ///< all bodies that are not born yet, and perhaps some that have left
+  core::Step next_birth_ = 0;         ///< no body is born before
   int steps_since_snapshot_ = 0;
   std::vector<std::uint32_t> moved_;           ///< places of the bodies that the last step has moved
   std::vector<core::Contact> moved_contacts_;  ///< their contacts, in no order

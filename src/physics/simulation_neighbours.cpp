@@ -273,8 +273,7 @@ void Simulation::take_guests(std::vector<Visit>& visits) {
   }
   if (!arrivals.empty()) {
     notes_.give_up_copy();
-    table_.insert(std::move(arrivals));
-    next_birth_ = std::min(next_birth_, step_);
+    insert(std::move(arrivals));
     insert_born();
   }
   for (const Visit& visit : visits) {
@@ -305,16 +304,17 @@ void Simulation::send_guests_home() {
 void Simulation::drop_guests(std::span<const core::BodyId> ids) {
   if (ids.empty()) return;
   notes_.give_up_copy();  // which contacts other bodies still have with them is not known
-  std::vector<bool> leaves(table_.size());
+  std::vector<std::uint32_t> leaving;
   std::vector<btRigidBody*> gone;
   for (const core::BodyId id : ids) {
     HostedBody* const body = table_.find(id);
-    leaves[static_cast<std::size_t>(body - table_.bodies().data())] = true;
+    leaving.push_back(static_cast<std::uint32_t>(body - table_.bodies().data()));
     gone.push_back(body->rigid.get());
     std::erase_if(pushed_, [&](const Push& push) { return push.body == body->rigid.get(); });
   }
   world_.remove(gone);
-  erase(leaves);
+  std::ranges::sort(leaving);
+  erase(leaving);
 }
 
 }  // namespace aurasim::physics

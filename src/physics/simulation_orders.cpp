@@ -125,15 +125,13 @@ void Simulation::take_out_what_broke() {
 
 /// Wakes the bodies that touch a body.
 void Simulation::wake_beside(core::BodyId id) {
-  world_.for_each_contact([&](const ContactView& contact) {
-    const btRigidBody* const gone = table_.find(id)->rigid.get();
-    for (const auto& [one, other] :
-         {std::pair(&contact.body0(), &contact.body1()), std::pair(&contact.body1(), &contact.body0())}) {
-      if (one != gone || other->getUserIndex() < 0) continue;
-      const HostedBody& woken = table_[static_cast<std::size_t>(other->getUserIndex())];
-      awaken(*woken.rigid);
-      note(woken.id);
-    }
+  const btRigidBody* const gone = table_.find(id)->rigid.get();
+  world_.for_each_contact({&gone, 1}, [&](const ContactView& contact, std::size_t i0, std::size_t) {
+    const btCollisionObject& other = i0 == 0 ? contact.body1() : contact.body0();
+    if (is_static(other.getUserIndex())) return;
+    const HostedBody& woken = table_[static_cast<std::size_t>(other.getUserIndex())];
+    awaken(*woken.rigid);
+    note(woken.id);
   });
 }
 
@@ -141,7 +139,6 @@ void Simulation::take_out(const Removal& removal) {
   const core::BodyId id = removal.body;
   wake_beside(id);
   const std::uint64_t severed = severed_contacts_;
-  notes_.give_up_copy();  // which contacts the bodies that it touched still have is not known
   release({&id, 1});
   severed_contacts_ = severed;  // the removed body's contacts do not count as severed
   removed_.push_back(removal);

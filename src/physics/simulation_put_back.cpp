@@ -46,16 +46,18 @@ std::vector<core::BodyRecord> Simulation::take_out_all_but(std::span<const core:
     }
   }
   core::ClusterState leaving;
+  std::vector<std::uint32_t> places;
   std::vector<btRigidBody*> born;
-  for (std::size_t i = 0; i < leaves.size(); ++i) {
+  for (std::uint32_t i = 0; i < leaves.size(); ++i) {
     if (!leaves[i]) continue;
+    places.push_back(i);
     leaving.bodies.push_back({.id = table_[i].id});
     if (table_[i].born) born.push_back(table_[i].rigid.get());
   }
   if (leaving.bodies.empty()) return arrivals;
   joints_.disconnect(leaving, table_, world_);
   world_.remove(born);
-  erase(leaves);
+  erase(places);
   return arrivals;
 }
 

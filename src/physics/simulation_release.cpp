@@ -1,33 +1,27 @@
 // Release of bodies from a simulation, with everything that a hand-off has to carry.
-#include <limits>
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
 #include "core/progress.h"
-#include "physics/bullet_convert.h"
-#include "physics/moving_body.h"
-#include "physics/prefetch.h"
 #include "physics/simulation.h"
 
 namespace aurasim::physics {
-namespace {
 
-/// Cluster number of a body that stays.
-constexpr std::uint32_t kStays = std::numeric_limits<std::uint32_t>::max();
-
-}  // namespace
-
-/// By place in the table: the leaving cluster of the body, or kStays.
-std::vector<std::uint32_t> Simulation::membership(std::span<const std::span<const core::BodyId>> clusters) const {
-  std::vector<std::uint32_t> cluster_at(table_.size(), kStays);
+/// The bodies of the clusters, ascending by place in the table.
+std::vector<Simulation::Member> Simulation::membership(std::span<const std::span<const core::BodyId>> clusters) const {
+  std::vector<Member> members;
   for (std::uint32_t cluster = 0; cluster < clusters.size(); ++cluster) {
+    std::size_t near = 0;
     for (const core::BodyId id : clusters[cluster]) {
-      const HostedBody* const body = table_.find(id);
-      if (body == nullptr) throw std::invalid_argument("body " + std::to_string(core::value_of(id)) + " is not here");
-      cluster_at[static_cast<std::size_t>(body - table_.bodies().data())] = cluster;
+      if (table_.find(id, near) == nullptr) {
+        throw std::invalid_argument("body " + std::to_string(core::value_of(id)) + " is not here");
+      }
+      members.push_back({static_cast<std::uint32_t>(near), cluster});
     }
   }
-  return cluster_at;
+  std::ranges::sort(members, {}, &Member::place);
+  return members;
 }
 
 struct Simulation::Copies {
@@ -35,30 +29,24 @@ struct Simulation::Copies {
   std::uint64_t across = 0;  ///< contacts and joints with bodies outside the cluster
 };
 
-Simulation::Copies Simulation::copy(const std::vector<std::uint32_t>& cluster_at, std::size_t count, bool whole) const {
+Simulation::Copies Simulation::copy(std::span<const Member> members, std::size_t count, bool whole) const {
   Copies copies;
   copies.clusters.resize(count);
-  for (std::size_t i = 0; i < table_.size(); ++i) {
-    if (cluster_at[i] != kStays) copies.clusters[cluster_at[i]].bodies.push_back(table_[i].record());
+  std::vector<const btRigidBody*> bodies;
+  for (const Member& member : members) {
+    copies.clusters[member.cluster].bodies.push_back(table_[member.place].record());
+    bodies.push_back(table_[member.place].rigid.get());
   }
   std::vector<std::vector<KeyedContact>> contacts(count);
-  world_.for_each_contact([&](const ContactView& contact) {
-    const int index0 = contact.body0().getUserIndex();
-    const int index1 = contact.body1().getUserIndex();
-    const std::uint32_t cluster0 = is_static(index0) ? kStays : cluster_at[static_cast<std::size_t>(index0)];
-    const std::uint32_t cluster1 = is_static(index1) ? kStays : cluster_at[static_cast<std::size_t>(index1)];
-    if (cluster0 == kStays && cluster1 == kStays) return;
-    if (is_static(index0) || is_static(index1) || cluster0 == cluster1) {
-      const std::uint32_t cluster = cluster0 != kStays ? cluster0 : cluster1;
-      contacts[cluster].push_back({ref_of(contact.body0()), ref_of(contact.body1()), contact});
-    } else {
-      ++copies.across;
-      if (!whole) return;
-      for (const std::uint32_t cluster : {cluster0, cluster1}) {
-        if (cluster == kStays) continue;
-        contacts[cluster].push_back({ref_of(contact.body0()), ref_of(contact.body1()), contact});
-      }
-    }
+  world_.for_each_contact(bodies, [&](const ContactView& contact, std::size_t i0, std::size_t i1) {
+    const KeyedContact keyed{ref_of(contact.body0()), ref_of(contact.body1()), contact};
+    const bool one = i0 < members.size(), other = i1 < members.size();
+    const bool has_static = contact.body0().isStaticObject() || contact.body1().isStaticObject();
+    const bool is_inside = has_static || (one && other && members[i0].cluster == members[i1].cluster);
+    if (!is_inside) ++copies.across;
+    if (!is_inside && !whole) return;
+    if (one) contacts[members[i0].cluster].push_back(keyed);
+    if (other && !(one && is_inside)) contacts[members[i1].cluster].push_back(keyed);
   });
   for (std::size_t i = 0; i < count; ++i) {
     core::ClusterState& cluster = copies.clusters[i];
@@ -82,19 +70,19 @@ core::ClusterState Simulation::release(std::span<const core::BodyId> bodies) {
 }
 
 std::vector<core::ClusterState> Simulation::release(std::span<const std::span<const core::BodyId>> clusters) {
-  const std::vector<std::uint32_t> cluster_at = membership(clusters);
-  Copies leaving = copy(cluster_at, clusters.size(), false);
+  const std::vector<Member> members = membership(clusters);
+  Copies leaving = copy(members, clusters.size(), false);
   severed_contacts_ += leaving.across;
-  std::vector<bool> leaves(table_.size());
+  std::vector<std::uint32_t> places;
   std::vector<btRigidBody*> born;
-  for (std::size_t i = 0; i < table_.size(); ++i) {
-    leaves[i] = cluster_at[i] != kStays;
-    if (leaves[i] && table_[i].born) born.push_back(table_[i].rigid.get());
+  for (const Member& member : members) {
+    places.push_back(member.place);
+    if (table_[member.place].born) born.push_back(table_[member.place].rigid.get());
   }
   for (const core::ClusterState& cluster : leaving.clusters) joints_.disconnect(cluster, table_, world_);
   core::Progress::mark();
   world_.remove(born);
-  erase(leaves);
+  erase(places);
   return std::move(leaving.clusters);
 }
 

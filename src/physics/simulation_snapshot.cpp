@@ -39,12 +39,11 @@ void Simulation::note_all() {
   snapshot_is_fresh_ = records_are_fresh_ = false;
 }
 
-/// Takes bodies out of the table. They have left Bullet's world already.
-void Simulation::erase(const std::vector<bool>& leaving) {
-  for (std::size_t i = 0; i < leaving.size(); ++i) {
-    if (!leaving[i]) continue;
-    hash_.drop(table_[i]);
-    notes_.note_gone(table_[i].id);
+/// Takes bodies out of the table, by place, ascending. They have left Bullet's world already.
+void Simulation::erase(std::span<const std::uint32_t> leaving) {
+  for (const std::uint32_t place : leaving) {
+    hash_.drop(table_[place]);
+    notes_.note_gone(table_[place].id);
   }
   table_.erase(leaving);
   snapshot_is_fresh_ = records_are_fresh_ = false;

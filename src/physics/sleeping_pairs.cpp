@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
@@ -36,49 +37,12 @@ void SleepingPairs::put(const btBroadphasePair& pair) {
     pack_points(*manifolds[i], bytes_);
   }
   bytes_[0] = static_cast<std::uint8_t>(count), bytes_[1] = static_cast<std::uint8_t>(count >> 8);
-  std::uint32_t at = static_cast<std::uint32_t>(pairs_.size());
-  if (free_.empty()) {
-    pairs_.emplace_back();
-  } else {
-    at = free_.back();
-    free_.pop_back();
-  }
-  Entry& entry = pairs_[at];
-  entry.pair.proxy0 = pair.m_pProxy0, entry.pair.proxy1 = pair.m_pProxy1;
+  Pair kept{pair.m_pProxy0, pair.m_pProxy1, nullptr};
   if (count > 0) {
-    entry.pair.contacts = std::make_unique_for_overwrite<std::uint8_t[]>(bytes_.size());
-    std::ranges::copy(bytes_, entry.pair.contacts.get());
+    kept.contacts = std::make_unique_for_overwrite<std::uint8_t[]>(bytes_.size());
+    std::ranges::copy(bytes_, kept.contacts.get());
   }
-  entry.slots[0] = slot_of(object_of(*pair.m_pProxy0)), entry.slots[1] = slot_of(object_of(*pair.m_pProxy1));
-  link(at, 0), link(at, 1);
-  ++count_;
-}
-
-void SleepingPairs::link(std::uint32_t at, int side) {
-  Entry& entry = pairs_[at];
-  const std::uint32_t slot = entry.slots[side];
-  if (slot == 0) return;
-  if (slot >= first_.size()) first_.resize(slot + 1, kNone);
-  const std::uint32_t next = first_[slot];
-  first_[slot] = 2 * at + static_cast<std::uint32_t>(side);
-  entry.next[side] = next, entry.before[side] = kNone;
-  if (next != kNone) pairs_[next / 2].before[next % 2] = first_[slot];
-}
-
-void SleepingPairs::unlink(std::uint32_t at, int side) {
-  const Entry& entry = pairs_[at];
-  if (entry.slots[side] == 0) return;
-  const std::uint32_t next = entry.next[side], before = entry.before[side];
-  (before == kNone ? first_[entry.slots[side]] : pairs_[before / 2].next[before % 2]) = next;
-  if (next != kNone) pairs_[next / 2].before[next % 2] = before;
-}
-
-SleepingPairs::Pair SleepingPairs::take(std::uint32_t at) {
-  unlink(at, 0), unlink(at, 1);
-  free_.push_back(at);
-  Pair taken = std::exchange(pairs_[at].pair, {});
-  if (--count_ == 0) pairs_.clear(), free_ = {};
-  return taken;
+  pairs_.add(slot_of(object_of(*pair.m_pProxy0)), slot_of(object_of(*pair.m_pProxy1)), std::move(kept));
 }
 
 /// Goes along the pairs of both bodies, because one of the two may have many.
@@ -90,7 +54,7 @@ std::uint32_t SleepingPairs::find(const btBroadphaseProxy& a, const btBroadphase
   for (int i = 0; i < 2; ++i) {
     if (slots[i] == 0) continue;  // along the other one's
     if (!has(slots[i])) return kNone;
-    links[i] = first_[slots[i]];
+    links[i] = pairs_.first(slots[i]);
   }
   const auto matches = [&](const Pair& pair) {
     return (pair.proxy0 == &a && pair.proxy1 == &b) || (pair.proxy0 == &b && pair.proxy1 == &a);
@@ -99,15 +63,14 @@ std::uint32_t SleepingPairs::find(const btBroadphaseProxy& a, const btBroadphase
     for (int i = 0; i < 2; ++i) {
       if (slots[i] == 0) continue;
       if (links[i] == kNone) return kNone;
-      const Entry& entry = pairs_[links[i] / 2];
-      if (matches(entry.pair)) return links[i] / 2;
-      links[i] = entry.next[links[i] % 2];
+      if (matches(pairs_.item(links[i] / 2))) return links[i] / 2;
+      links[i] = pairs_.next(links[i]);
     }
   }
 }
 
 void SleepingPairs::remove(const btBroadphaseProxy& a, const btBroadphaseProxy& b) {
-  if (const std::uint32_t at = find(a, b); at != kNone) take(at);
+  if (const std::uint32_t at = find(a, b); at != kNone) pairs_.take(at);
 }
 
 void SleepingPairs::remove_all_of(const btBroadphaseProxy& object) {
@@ -116,10 +79,11 @@ void SleepingPairs::remove_all_of(const btBroadphaseProxy& object) {
     while (has(slot)) take_one(slot);
     return;
   }
-  for (std::uint32_t at = 0; at < pairs_.size(); ++at) {
-    const Pair& pair = pairs_[at].pair;
-    if (pair.proxy0 == &object || pair.proxy1 == &object) take(at);
-  }
+  std::vector<std::uint32_t> of_static;
+  pairs_.for_each([&](std::uint32_t at) {
+    if (pairs_.item(at).proxy0 == &object || pairs_.item(at).proxy1 == &object) of_static.push_back(at);
+  });
+  for (const std::uint32_t at : of_static) pairs_.take(at);
 }
 
 SleepingPairs::ContactReader::ContactReader(const Pair& pair)

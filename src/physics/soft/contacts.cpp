@@ -138,9 +138,12 @@ void SoftContacts::look(btOverlappingPairCache& pairs, btCollisionDispatcher& di
     came_.insert(came_.end(), list.came.begin(), list.came.end());
     parted_.insert(parted_.end(), list.parted.begin(), list.parted.end());
   }
-  if (!islands_.knows_sleepers()) {
-    static_cast<const ContactPairs&>(pairs).sleeping().for_each_touch([this](std::uint32_t a, std::uint32_t b) {
-      touches_of_sleepers_.push_back({a, b});
+  const SleepingPairs& sleeping = static_cast<const ContactPairs&>(pairs).sleeping();
+  for (const std::uint32_t slot : islands_.forgotten()) {
+    if (!islands_.sleeps(slot)) continue;
+    sleeping.for_each_touch(slot, [&](std::uint32_t other) {
+      if (other < slot && islands_.is_forgotten(other)) return;  // it comes from there
+      touches_of_sleepers_.push_back({slot, other});
     });
   }
   for (const List& list : lists_) {
@@ -170,8 +173,10 @@ void SoftContacts::gather(const soft::Worker& worker) {
 void SoftContacts::look(List& list, btOverlappingPairCache& pairs, int first, int last,
                         btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
   btBroadphasePairArray& all = pairs.getOverlappingPairArray();
-  const bool knows_sleepers = islands_.knows_sleepers();
   const auto both_sleep = [this](const PairNote& of) { return islands_.sleeps(of.a) && islands_.sleeps(of.b()); };
+  const auto is_forgotten = [this](const PairNote& of) {
+    return islands_.is_forgotten(of.a) || islands_.is_forgotten(of.b());
+  };
   const auto is_apart = [&](const btBroadphasePair& pair, const PairNote& note) {
     return pair.m_algorithm == nullptr && bounds_.are_apart(note.a, note.b());
   };
@@ -179,7 +184,7 @@ void SoftContacts::look(List& list, btOverlappingPairCache& pairs, int first, in
     if (i >= last) return false;
     const PairNote note = noted(all[i]);
     if (note.is_known() && is_apart(all[i], note)) return false;
-    return !note.is_known() || (note.may_touch() && !(knows_sleepers && both_sleep(note)));
+    return !note.is_known() || (note.may_touch() && (!both_sleep(note) || is_forgotten(note)));
   };
   for (int i = first; i < last; ++i) {
     core::Progress::mark_now_and_then(static_cast<std::size_t>(i));
@@ -198,7 +203,7 @@ void SoftContacts::look(List& list, btOverlappingPairCache& pairs, int first, in
     const PairNote note = note_of(all[i]);
     if (!note.may_touch() || is_apart(all[i], note)) continue;
     if (both_sleep(note)) {  // touches of sleepers are unchanged
-      if (!knows_sleepers && touch(all[i], list.manifolds)) list.touches_of_sleepers.push_back({note.a, note.b()});
+      if (is_forgotten(note) && touch(all[i], list.manifolds)) list.touches_of_sleepers.push_back({note.a, note.b()});
       continue;
     }
     if (islands_.slept(note.a) && islands_.slept(note.b())) know_touches(list, all[i]);

@@ -61,7 +61,8 @@ void SoftIslands::insert(btRigidBody& body) {
   if (body.isStaticObject()) return body.setUserIndex3(0);
   if (free_.empty()) {
     free_.push_back(static_cast<std::uint32_t>(states_.size()));
-    states_.push_back(0), parents_.push_back(0), parts_.push_back(0), entries_.emplace_back();
+    parents_.push_back(free_.back()), next_.push_back(free_.back());
+    states_.push_back(0), parts_.push_back(0), entries_.emplace_back();
   }
   const std::uint32_t slot = free_.back();
   free_.pop_back();
@@ -76,9 +77,9 @@ void SoftIslands::insert(btRigidBody& body) {
 void SoftIslands::remove(btRigidBody& body) {
   const std::uint32_t slot = slot_of(body);
   if (slot == 0) return;
-  if (has(slot, kKept)) forget_sleepers();
-  states_[slot] = 0;
   unlist(slot);
+  dissolve(slot);
+  states_[slot] = 0;
   if (entries_[slot].is_guest) std::erase(guests_, &body);
   entries_[slot].body = nullptr;
   place_of(body).changes = nullptr;
@@ -87,46 +88,70 @@ void SoftIslands::remove(btRigidBody& body) {
 
 void SoftIslands::forget_past() {
   std::fill(states_.begin() + 1, states_.end(), std::uint8_t{0});
-  forget_sleepers();
-  called_.clear();
-  changes_.clear();
+  std::iota(parents_.begin(), parents_.end(), 0U);
+  std::iota(next_.begin(), next_.end(), 0U);
+  seams_of_sleepers_.clear();
+  for (auto* list : {&called_, &changes_, &forgotten_}) list->clear();
   for (std::uint32_t slot = 1; slot < entries_.size(); ++slot) changes_.push_back(slot);
 }
 
 void SoftIslands::free_spare_memory() {
   core::free_memory(touches_, unsorted_, ends_, joints_, order_);
-  for (auto* list : {&seams_, &seams_of_sleepers_}) list->shrink_to_fit();
-  for (auto* list : {&called_, &changes_, &settling_, &marked_}) list->shrink_to_fit();
+  seams_.shrink_to_fit();
+  for (auto* list : {&called_, &changes_, &settling_, &marked_, &forgotten_, &found_}) list->shrink_to_fit();
   awake_.shrink_to_fit();
 }
 
 void SoftIslands::unlist(std::uint32_t slot) {
-  std::vector<btRigidBody*>* const list = std::exchange(entries_[slot].list, nullptr);
-  if (list == nullptr) return;
-  btRigidBody* const last = list->back();
-  (*list)[entries_[slot].place] = last;
+  if (std::exchange(entries_[slot].list, List::kNone) != List::kAwake) return;
+  btRigidBody* const last = awake_.back();
+  awake_[entries_[slot].place] = last;
   entries_[slot_of(*last)].place = entries_[slot].place;
-  list->pop_back();
+  awake_.pop_back();
   is_in_order_ = false;
 }
 
-void SoftIslands::put_into(std::vector<btRigidBody*>& list, std::uint32_t slot) {
+void SoftIslands::put_into(List list, std::uint32_t slot) {
   Entry& entry = entries_[slot];
-  if (entry.list != &list) {
+  if (entry.list != list) {
     unlist(slot);
-    entry.list = &list;
-    entry.place = static_cast<std::uint32_t>(list.size());
-    list.push_back(entry.body);
-    is_in_order_ = false;
+    entry.list = list;
+    if (list == List::kAwake) {
+      entry.place = static_cast<std::uint32_t>(awake_.size());
+      awake_.push_back(entry.body);
+      is_in_order_ = false;
+    }
   }
-  if (&list != &asleep_ || entry.settles) return;
+  if (list != List::kAsleep || entry.settles) return;
   entry.settles = true;
   settling_.push_back(slot);
 }
 
+/// The touches of a sleeper are not known any more. Its seams are among them.
+void SoftIslands::forget(std::uint32_t slot) {
+  drop_seams(slot);
+  if (has(slot, kForgotten)) return;
+  states_[slot] |= kForgotten;
+  forgotten_.push_back(slot);
+}
+
+/// Takes the part of a body apart, and forgets what its sleepers touch.
+void SoftIslands::dissolve(std::uint32_t slot) {
+  drop_seams(slot);
+  if (next_[slot] == slot) return;
+  for_each_of_part(slot, [this](std::uint32_t of_part) {
+    parents_[of_part] = next_[of_part] = of_part;
+    if (entries_[of_part].list == List::kAsleep) forget(of_part);
+  });
+}
+
+void SoftIslands::drop_seams(std::uint32_t slot) {
+  while (seams_of_sleepers_.has(slot)) seams_of_sleepers_.take(seams_of_sleepers_.first(slot) / 2);
+}
+
 void SoftIslands::call() {
   for (const std::uint32_t slot : changes_) {
-    if (btRigidBody* const body = entries_[slot].body) put_into(body->isActive() ? awake_ : asleep_, slot);
+    if (btRigidBody* const body = entries_[slot].body) put_into(body->isActive() ? List::kAwake : List::kAsleep, slot);
   }
   changes_.clear();
   if (!is_in_order_) put_in_order();
@@ -136,13 +161,10 @@ void SoftIslands::call() {
   }
   std::erase_if(settling_, [this](std::uint32_t slot) {
     Entry& entry = entries_[slot];
-    if (entry.list == &asleep_) note(*entry.body);
-    entry.settles = entry.list == &asleep_ && !has(slot, kSlept);
+    if (entry.list == List::kAsleep) note(*entry.body);
+    entry.settles = entry.list == List::kAsleep && !has(slot, kSlept);
     return !entry.settles;
   });
-  if (knows_sleepers_) return;
-  std::iota(parents_.begin(), parents_.end(), 0U);
-  seams_of_sleepers_.clear();
 }
 
 /// Puts the awake bodies in the order of their slots, as they mostly lie in memory.
@@ -162,11 +184,12 @@ void SoftIslands::note(btRigidBody& body) {
   const std::uint32_t slot = slot_of(body);
   const core::Block& block = place_of(body).block;
   const bool sleeps = !body.isActive();
-  if (sleeps != has(slot, kKept) || (sleeps && entries_[slot].block != block)) forget_sleepers();
+  const bool is_kept = has(slot, kKept) && entries_[slot].block == block;
+  if (!sleeps || !is_kept) dissolve(slot);
+  if (sleeps && !is_kept) forget(slot);
   entries_[slot].block = block;
-  if (!sleeps) parents_[slot] = slot;
   if (is_called(body)) called_.push_back(slot);
-  const int before = has(slot, kSleeps) ? kSlept : 0;
+  const int before = (has(slot, kSleeps) ? kSlept : 0) | (states_[slot] & kForgotten);
   states_[slot] = static_cast<std::uint8_t>(before | (sleeps ? kSleeps | kKept : kMoves));
 }
 
@@ -176,29 +199,40 @@ std::uint32_t SoftIslands::part_of(std::uint32_t slot) {
   return slot;
 }
 
-/// Puts two bodies that touch into one part, or notes in `seams` that they touch across a seam.
-void SoftIslands::unite(std::uint32_t a, std::uint32_t b, std::vector<Seam>& seams) {
-  if (a == 0 || b == 0) return;
-  if (entries_[a].block != entries_[b].block) {
-    seams.push_back({a, b});
-    return;
-  }
+/// Puts two bodies that touch into one part. Returns false with nothing done if they touch across a seam.
+bool SoftIslands::unite(std::uint32_t a, std::uint32_t b) {
+  if (a == 0 || b == 0) return true;
+  if (entries_[a].block != entries_[b].block) return false;
   wakes_any_ = wakes_any_ || sleeps(a) != sleeps(b);
   const std::uint32_t one = part_of(a), other = part_of(b);
+  if (one == other) return true;
   parents_[std::max(one, other)] = std::min(one, other);
+  std::swap(next_[one], next_[other]);  // joins the two rings
+  return true;
+}
+
+void SoftIslands::unite_awake(std::uint32_t a, std::uint32_t b) {
+  if (!unite(a, b)) seams_.push_back({a, b});
+}
+
+void SoftIslands::unite_asleep(std::uint32_t a, std::uint32_t b) {
+  if (!unite(a, b)) seams_of_sleepers_.add(a, b, {});
 }
 
 void SoftIslands::find_parts(std::span<const SoftTouch> touches, std::span<const SleepersTouch> of_sleepers,
                              std::span<btTypedConstraint* const> joints) {
   wakes_any_ = false;
   seams_.clear();
-  for (const SoftTouch& touch : touches) unite(touch.slot_a, touch.slot_b, seams_);
-  for (const SleepersTouch& touch : of_sleepers) unite(touch.slot_a, touch.slot_b, seams_of_sleepers_);
+  for (const SoftTouch& touch : touches) unite_awake(touch.slot_a, touch.slot_b);
+  for (const SleepersTouch& touch : of_sleepers) unite_asleep(touch.slot_a, touch.slot_b);
   for (const btTypedConstraint* joint : joints) {
+    if (!joint->isEnabled()) continue;
     const std::uint32_t one = slot_of(joint->getRigidBodyA()), other = slot_of(joint->getRigidBodyB());
-    const bool both_sleep = sleeps(one) && sleeps(other);
-    if (!joint->isEnabled() || (both_sleep && knows_sleepers_)) continue;
-    unite(one, other, both_sleep ? seams_of_sleepers_ : seams_);
+    if (!sleeps(one) || !sleeps(other)) {
+      unite_awake(one, other);
+    } else if (is_forgotten(one) || is_forgotten(other)) {
+      unite_asleep(one, other);
+    }
   }
   mark_parts();
 }
@@ -206,23 +240,26 @@ void SoftIslands::find_parts(std::span<const SoftTouch> touches, std::span<const
 void SoftIslands::settle(std::span<const SoftTouch> touches, std::span<const std::uint32_t> parted,
                          std::span<btTypedConstraint* const> joints) {
   look_across(parted);
-  const bool knew = knows_sleepers_;
-  knows_sleepers_ = true;
+  std::swap(found_, forgotten_);
+  forgotten_.clear();
+  for (const std::uint32_t slot : found_) states_[slot] = static_cast<std::uint8_t>(states_[slot] & ~kForgotten);
   put_to_sleep();
   has_woken_any_ = false;
   if (wakes_any_) wake();
   for (const Seam& seam : seams_) {
-    if (!has(seam.a, kMoves) && !has(seam.b, kMoves)) seams_of_sleepers_.push_back(seam);
+    if (!has(seam.a, kMoves) && !has(seam.b, kMoves)) seams_of_sleepers_.add(seam.a, seam.b, {});
   }
   // Contacts ahead of time between bodies that now sleep do not join their parts.
-  const auto stay = [this](const SoftTouch& touch) { return !has(touch.slot_a, kMoves) && !has(touch.slot_b, kMoves); };
-  if (std::ranges::any_of(touches, [&](const SoftTouch& touch) { return touch.ahead && stay(touch); })) {
-    forget_sleepers();
-  }
-  if (!knew) {
-    for (btRigidBody* body : asleep_) {
-      if (is_asleep(*body)) stop(*body);
+  for (const SoftTouch& touch : touches) {
+    if (!touch.ahead || has(touch.slot_a, kMoves) || has(touch.slot_b, kMoves)) continue;
+    for (const std::uint32_t slot : {touch.slot_a, touch.slot_b}) {
+      if (slot == 0) continue;
+      dissolve(slot);
+      forget(slot);
     }
+  }
+  for (const std::uint32_t slot : found_) {
+    if (entries_[slot].list == List::kAsleep && is_asleep(*entries_[slot].body)) stop(*entries_[slot].body);
   }
   joints_.clear();
   for (btTypedConstraint* joint : joints) {
@@ -263,7 +300,13 @@ void SoftIslands::look_across(std::span<const std::uint32_t> parted) {
   };
   const auto look_across = [&touched_by](const Seam& seam) { touched_by(seam.a, seam.b), touched_by(seam.b, seam.a); };
   std::ranges::for_each(seams_, look_across);
-  if (wakes_any_) std::ranges::for_each(seams_of_sleepers_, look_across);
+  // Of sleepers, only those of a part that an awake body has just joined can stir.
+  for (std::size_t i = 0, count = wakes_any_ ? marked_.size() : 0; i < count; ++i) {
+    if ((parts_[marked_[i]] & kStirs) == 0) continue;
+    for_each_of_part(marked_[i], [&](std::uint32_t slot) {
+      for_each_seam_of_sleeper(slot, [&](std::uint32_t other) { touched_by(other, slot); });
+    });
+  }
   const auto call = [this](std::uint32_t slot) {
     mark(slot, kUp);
     wakes_any_ = true;
@@ -286,29 +329,26 @@ void SoftIslands::put_to_sleep() {
     body.setActivationState(ISLAND_SLEEPING);
     stop(body);
     states_[slot] = static_cast<std::uint8_t>((states_[slot] & ~kMoves) | kKept);
-    put_into(asleep_, slot);  // another body takes its place in the list
+    put_into(List::kAsleep, slot);  // another body takes its place in the list
   }
 }
 
 /// Wakes the sleepers of parts that are awake. They stay awake for at least as long as a body has to be slow before it
 /// sleeps, so that no part falls asleep and wakes by turns.
 void SoftIslands::wake() {
-  for (std::size_t i = 0; i < asleep_.size();) {
-    btRigidBody& body = *asleep_[i];
-    const std::uint32_t slot = slot_of(body);
-    const bool wakes = !entries_[slot].is_guest && is(slot, kUp | kTouched);
-    if (!wakes || !is_asleep(body)) {
-      if (wakes) forget_sleepers();  // disabled: takes no part in the world and is alone from now on
-      ++i;
-      continue;
-    }
-    body.setActivationState(WANTS_DEACTIVATION);
-    body.setDeactivationTime(0);
+  const auto wake = [this](std::uint32_t slot) {
+    const Entry& entry = entries_[slot];
+    if (entry.list != List::kAsleep || entry.is_guest || !is_asleep(*entry.body)) return;  // the last: disabled
+    entry.body->setActivationState(WANTS_DEACTIVATION);
+    entry.body->setDeactivationTime(0);
     states_[slot] = static_cast<std::uint8_t>((states_[slot] & ~kKept) | kMoves);
-    put_into(awake_, slot);  // another body takes its place in the list
+    drop_seams(slot);
+    put_into(List::kAwake, slot);
     has_woken_any_ = true;
+  };
+  for (const std::uint32_t part : marked_) {
+    if ((parts_[part] & (kUp | kTouched)) != 0) for_each_of_part(part, wake);
   }
-  std::erase_if(seams_of_sleepers_, [this](const Seam& seam) { return has(seam.a, kMoves) || has(seam.b, kMoves); });
 }
 
 void SoftIslands::rest(btScalar step_s) {
@@ -349,7 +389,7 @@ void SoftIslands::decide(btRigidBody& guest, bool moves) {
   const std::uint32_t slot = slot_of(guest);
   if (has(slot, kMoves) == moves) return;
   states_[slot] = static_cast<std::uint8_t>(moves ? states_[slot] | kMoves : states_[slot] & ~kMoves);
-  put_into(moves ? awake_ : asleep_, slot);
+  put_into(moves ? List::kAwake : List::kAsleep, slot);
 }
 
 void SoftIslands::sort(std::span<const SoftTouch> touches, soft::Team& team) {

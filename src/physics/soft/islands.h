@@ -10,6 +10,7 @@
 #include <LinearMath/btScalar.h>
 
 #include "core/block.h"
+#include "physics/pair_lists.h"
 #include "physics/soft/threads.h"
 #include "physics/soft/touch.h"
 
@@ -23,8 +24,9 @@ namespace aurasim::physics {
 /// alone. Bullet's activation state WANTS_DEACTIVATION means here: the body is still, and its part did not stir in the
 /// step that led to this state. A sleeper with deactivation time 0 wakes in the next step.
 ///
-/// A step costs nothing for a sleeper. Its touches stay until one of them wakes, arrives or leaves. Whoever changes the
-/// activation state or the block of a body from outside says so (note_change() in moving_body.h). A body's user index
+/// A step costs nothing for a sleeper. What it touches is known until a body of its part wakes, leaves, or is given
+/// another block; then only the touches of that part are found again. Whoever changes the activation state or the block
+/// of a body from outside says so (note_change() in moving_body.h). A body's user index
 /// grows with its id; a static's is negative. Nothing is allocated once warm.
 class SoftIslands {
  public:
@@ -48,11 +50,13 @@ class SoftIslands {
   /// Did the body sleep at the last call(), and at the one in the step before? Always true for statics.
   bool sleeps(std::uint32_t slot) const { return has(slot, kSleeps); }
   bool slept(std::uint32_t slot) const { return has(slot, kSlept); }
-  /// Are the touches of sleepers known? If not, find() has to get them as `of_sleepers`.
-  bool knows_sleepers() const { return knows_sleepers_; }
+  /// Sleepers whose touches are not known: find_parts() has to get those of them with other sleepers. Some of these
+  /// slots may be awake or free.
+  std::span<const std::uint32_t> forgotten() const { return forgotten_; }
+  bool is_forgotten(std::uint32_t slot) const { return has(slot, kForgotten); }
 
   /// After call(): nobody is awake, and nothing has to be found out about sleepers.
-  bool are_at_rest() const { return awake_.empty() && knows_sleepers_; }
+  bool are_at_rest() const { return awake_.empty() && forgotten_.empty(); }
 
   /// Finds the parts, and which of them stir.
   void find_parts(std::span<const SoftTouch> touches, std::span<const SleepersTouch> of_sleepers,
@@ -62,11 +66,15 @@ class SoftIslands {
               std::span<btTypedConstraint* const> joints);
 
   // Where regions are coupled, each region decides about the bodies that it hosts. Between find_parts() and settle():
-  /// Calls visit(slot, slot) for each two bodies of two blocks that touch. Some pairs come more than once.
+  /// Calls visit(slot, slot) for each two bodies of two blocks that touch, unless both sleep and none is a guest. Some
+  /// pairs come more than once.
   template <class Visit>
   void for_each_seam(Visit&& visit) const {
     for (const Seam& seam : seams_) visit(seam.a, seam.b);
-    for (const Seam& seam : seams_of_sleepers_) visit(seam.a, seam.b);
+    for (const btRigidBody* guest : guests_) {
+      const std::uint32_t slot = slot_of(*guest);
+      for_each_seam_of_sleeper(slot, [&](std::uint32_t other) { visit(slot, other); });
+    }
   }
   /// Does it matter to the body whether what touches it stirs?
   bool is_sleepy(std::uint32_t slot) const;
@@ -112,7 +120,8 @@ class SoftIslands {
     kSleeps = 1,
     kSlept = 2,
     kMoves = 4,  ///< it moves in the step
-    kKept = 8,   ///< it sleeps, and the touches of its part are known
+    kKept = 8,   ///< it sleeps, and its touches are known or it is in forgotten_
+    kForgotten = 16,  ///< it is in forgotten_
   };
   /// Of a part.
   enum Part : std::uint8_t {
@@ -121,12 +130,13 @@ class SoftIslands {
     kTouched = 4,  ///< a body of a part that stirs touches it across a seam
   };
 
+  enum class List : std::uint8_t { kNone, kAwake, kAsleep };
   struct Entry {
     btRigidBody* body = nullptr;
     core::Block block{0, 0};
-    std::vector<btRigidBody*>* list = nullptr;  ///< awake_ or asleep_
-    std::uint32_t place = 0;                    ///< in the list
-    bool settles = false;                       ///< it is in settling_
+    std::uint32_t place = 0;  ///< in awake_, if it is there
+    List list = List::kNone;  ///< kAsleep: it sleeps, or is disabled
+    bool settles = false;     ///< it is in settling_
     bool is_guest = false;
   };
   /// Slots of two bodies of two blocks that touch.
@@ -134,17 +144,39 @@ class SoftIslands {
     std::uint32_t a, b;
   };
 
-  /// Call when the touches of sleepers may have changed.
-  void forget_sleepers() { knows_sleepers_ = false; }
+  struct Nothing {};
+
+  void forget(std::uint32_t slot);
+  void dissolve(std::uint32_t slot);
+  void drop_seams(std::uint32_t slot);
+  template <class Visit>
+  void for_each_seam_of_sleeper(std::uint32_t slot, Visit&& visit) const {
+    for (std::uint32_t link = seams_of_sleepers_.first(slot); link != PairLists<Nothing>::kNone;
+         link = seams_of_sleepers_.next(link)) {
+      visit(seams_of_sleepers_.other(link));
+    }
+  }
+  /// Calls visit(slot) for the bodies of a part.
+  template <class Visit>
+  void for_each_of_part(std::uint32_t slot, Visit&& visit) const {
+    std::uint32_t of_part = slot;
+    do {
+      const std::uint32_t next = next_[of_part];
+      visit(of_part);
+      of_part = next;
+    } while (of_part != slot);
+  }
   bool has(std::uint32_t slot, State state) const { return (states_[slot] & state) != 0; }
   void note(btRigidBody& body);
   void unlist(std::uint32_t slot);
-  void put_into(std::vector<btRigidBody*>& list, std::uint32_t slot);
+  void put_into(List list, std::uint32_t slot);
   void put_in_order();
   std::uint32_t part_of(std::uint32_t slot);
   void mark(std::uint32_t slot, Part what);
   bool is(std::uint32_t slot, int what) { return (parts_[part_of(slot)] & what) != 0; }
-  void unite(std::uint32_t a, std::uint32_t b, std::vector<Seam>& seams);
+  bool unite(std::uint32_t a, std::uint32_t b);
+  void unite_awake(std::uint32_t a, std::uint32_t b);
+  void unite_asleep(std::uint32_t a, std::uint32_t b);
   void mark_parts();
   void look_across(std::span<const std::uint32_t> parted);
   void put_to_sleep();
@@ -155,22 +187,22 @@ class SoftIslands {
 
   std::vector<std::uint8_t> states_{kSleeps | kSlept | kKept};  ///< by slot, as the following vectors
   std::vector<std::uint32_t> parents_{0};
+  std::vector<std::uint32_t> next_{0};  ///< the next body of the same part, around
   std::vector<std::uint8_t> parts_{0};  ///< flags Part, by the first slot of a part
   std::vector<Entry> entries_{1};
   std::vector<std::uint32_t> free_;
-  std::vector<Seam> seams_;              ///< with a body that was awake at call()
-  std::vector<Seam> seams_of_sleepers_;  ///< with two sleepers, if their touches are known
-  std::vector<std::uint32_t> called_;    ///< sleepers that are to wake
+  std::vector<Seam> seams_;               ///< with a body that was awake at call()
+  PairLists<Nothing> seams_of_sleepers_;  ///< with two sleepers
+  std::vector<std::uint32_t> called_;     ///< sleepers that are to wake
   std::vector<std::uint32_t> changes_;   ///< slots of bodies that have come or were changed from outside
   std::vector<std::uint32_t> settling_;  ///< sleepers whose flags may still change
   std::vector<std::uint32_t> marked_;    ///< parts with flags
-  bool knows_sleepers_ = true;
+  std::vector<std::uint32_t> forgotten_, found_;  ///< sleepers whose touches are not known; those found in this step
   std::vector<std::uint32_t> order_;  ///< space for put_in_order()
   bool is_in_order_ = true;
   bool wakes_any_ = false;
   bool has_woken_any_ = false;
   std::vector<btRigidBody*> awake_;
-  std::vector<btRigidBody*> asleep_;  ///< or disabled
   std::vector<btRigidBody*> guests_;
   std::vector<SoftTouch> touches_, unsorted_;
   std::vector<std::uint32_t> ends_;  ///< by user index: end of the body's touches

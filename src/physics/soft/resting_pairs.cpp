@@ -46,7 +46,7 @@ void RestingPairs::bring_back(std::uint32_t slot, const btDispatcherInfo& info) 
     btBroadphasePair* const pair = pairs_.addOverlappingPair(back.proxy0, back.proxy1);
     if (pair == nullptr || back.contacts == nullptr) continue;
     make_manifolds(*pair, dispatcher_, info, made_);
-    SleepingPairs::for_each_contact(back, [this](const ContactView& contact) {
+    SleepingPairs::for_each_contact_of(back, [this](const ContactView& contact) {
       rows_.resize(contact.count() * core::kContactPointDoubles);
       contact.write(rows_.data());
       btPersistentManifold* const made = restore_points(made_, contact.body0(), contact.parts(), rows_);

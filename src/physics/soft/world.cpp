@@ -102,13 +102,17 @@ class SoftWorld final : public World {
     }
   }
 
+  // Bullet's list of bodies that are no statics is kept empty. It is not used, and would be searched for each body that
+  // leaves.
   void addRigidBody(btRigidBody* body) override {
     islands_.insert(*body);
     btDiscreteDynamicsWorld::addRigidBody(body);
+    m_nonStaticRigidBodies.resize(0);
   }
   void addRigidBody(btRigidBody* body, int group, int mask) override {
     islands_.insert(*body);
     btDiscreteDynamicsWorld::addRigidBody(body, group, mask);
+    m_nonStaticRigidBodies.resize(0);
   }
   void removeRigidBody(btRigidBody* body) override {
     islands_.remove(*body);
