@@ -18,6 +18,7 @@ struct HostedBody {
   core::PrototypeId prototype{};
   core::Step birth = 0;
   bool born = false;                   ///< true: the body is in Bullet's world
+  bool is_guest = false;               ///< another region hosts it (physics/coupling.h)
   std::unique_ptr<btRigidBody> rigid;  ///< a MovingBody; its user index is its place in the table
   std::uint64_t hash = 0;              ///< its part of KeptHash::sum()
 

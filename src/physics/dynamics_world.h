@@ -78,8 +78,8 @@ class DynamicsWorld {
     sleeping_pairs().for_each_contact(visit);
   }
 
-  /// Calls `visit(ContactView, i, j)` for each contact of `bodies`, in no order. `i`, `j`: which of `bodies` its first and
-  /// its second body are; bodies.size(): none. Costs nothing for other sleepers.
+  /// Calls `visit(ContactView, i, j)` for each contact of `bodies`, in no order. `i`, `j`: which of `bodies` its first
+  /// and its second body are; bodies.size(): none. Costs nothing for other sleepers.
   template <class Visit>
   void for_each_contact(std::span<const btRigidBody* const> bodies, Visit&& visit) const {
     std::vector<std::pair<const btCollisionObject*, std::size_t>> index;

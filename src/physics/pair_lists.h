@@ -74,7 +74,7 @@ class PairLists {
  private:
   struct Entry {
     [[no_unique_address]] Item item{};
-    std::uint32_t slots[2] = {};  ///< both 0: not used
+    std::uint32_t slots[2] = {};                                         ///< both 0: not used
     std::uint32_t next[2] = {kNone, kNone}, before[2] = {kNone, kNone};  ///< links of the pairs of each body
   };
 

@@ -100,7 +100,8 @@ HostedBody Simulation::make_body(const core::BodyRecord& record) {
   auto info = construction_of(prototype.mass_kg, shapes_->shape(prototype.shape), shapes_->inertia(record.prototype),
                               scene_->materials.at(prototype.material));
 
-  HostedBody body{record.id, record.epoch, record.prototype, record.birth, false, std::make_unique<MovingBody>(info)};
+  HostedBody body{
+      record.id, record.epoch, record.prototype, record.birth, false, false, std::make_unique<MovingBody>(info)};
   body.rigid->setFlags(0);  // no gyroscopic torque: see free_rotation.h
   use_part_surfaces(*body.rigid);
   if (settings_.continuous) {
@@ -146,6 +147,7 @@ void Simulation::put_in(std::span<const core::BodyRecord> bodies) {
 
 /// Puts bodies into the table. They wait for insert_born().
 void Simulation::insert(std::vector<HostedBody> arrivals) {
+  forget_moved();
   for (const HostedBody& body : arrivals) unborn_.push_back(body.id);
   table_.insert(std::move(arrivals));
   next_birth_ = std::min(next_birth_, step_);  // they have not been asked yet

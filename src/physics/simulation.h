@@ -182,7 +182,11 @@ class Simulation {
   void collect_contact_impulses();
   void list_contacts();
   void list_changed_contacts();
+  bool regroup_snapshot();
+  bool list_contacts_of_arrivals();
+  void forget_moved();
   void show_state(const HostedBody& body, std::size_t place, double coming_kick_m_s);
+  void count(const core::BodyState& state, std::int64_t times);
   void erase(std::span<const std::uint32_t> leaving);
   void copy_changes(core::ChangedState& copy);
   void note_moved();
@@ -236,7 +240,7 @@ class Simulation {
   mutable std::vector<KeyedContact> copied_contacts_;  ///< of copy_all(), kept for its memory
   StateNotes notes_;
   KeptHash hash_;
-  bool will_stop_sleepers_ = false;  ///< the next step may change sleepers
+  bool will_stop_sleepers_ = false;   ///< the next step may change sleepers
   std::vector<core::BodyId> unborn_;  ///< all bodies that are not born yet, and perhaps some that have left
   core::Step next_birth_ = 0;         ///< no body is born before
   int steps_since_snapshot_ = 0;
@@ -250,6 +254,7 @@ class Simulation {
   core::Snapshot snapshot_;
   /// By place in the table: place in the snapshot, which has no guests. Empty where regions are not coupled.
   std::vector<std::uint32_t> shown_at_;
+  std::uint32_t shown_ = 0;  ///< number of bodies that the snapshot is to have
   bool records_are_fresh_ = false;
   std::vector<core::BodyRecord> records_;
   std::vector<core::Contact> unsorted_contacts_;

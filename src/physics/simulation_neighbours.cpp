@@ -261,7 +261,7 @@ void Simulation::take_guests(std::vector<Visit>& visits) {
     HostedBody* body = table_.find(visit.body.id);
     if (body == nullptr) {
       arrivals.push_back(make_body(visit.body));
-      place_of(*arrivals.back().rigid).is_guest = true;
+      arrivals.back().is_guest = place_of(*arrivals.back().rigid).is_guest = true;
       continue;
     }
     if (!is_guest(*body->rigid)) {

@@ -3,8 +3,11 @@
 #include <iterator>
 #include <limits>
 #include <tuple>
+#include <utility>
 
+#include "core/keep_one_of_each.h"
 #include "core/progress.h"
+#include "core/regroup.h"
 #include "physics/moving_body.h"
 #include "physics/prefetch.h"
 #include "physics/simulation.h"
@@ -16,6 +19,13 @@ namespace {
 constexpr std::size_t kFewBodies = 1024;
 /// In place of the place of a guest.
 constexpr std::uint32_t kNotShown = std::numeric_limits<std::uint32_t>::max();
+
+/// A body of which the snapshot has no state yet.
+core::BodyState not_yet_there() {
+  core::BodyState state;
+  state.birth = std::numeric_limits<core::Step>::max();
+  return state;
+}
 
 bool before(const core::Contact& x, const core::Contact& y) { return std::tie(x.a, x.b) < std::tie(y.a, y.b); }
 bool same(const core::Contact& x, const core::Contact& y) { return x.a == y.a && x.b == y.b; }
@@ -41,6 +51,7 @@ void Simulation::note_all() {
 
 /// Takes bodies out of the table, by place, ascending. They have left Bullet's world already.
 void Simulation::erase(std::span<const std::uint32_t> leaving) {
+  forget_moved();
   for (const std::uint32_t place : leaving) {
     hash_.drop(table_[place]);
     notes_.note_gone(table_[place].id);
@@ -82,16 +93,19 @@ const core::Snapshot& Simulation::snapshot() {
     for (const std::uint32_t shown : snapshot_.changed) changed.note(snapshot_.bodies[shown].id);
   }
 
-  snapshot_.step = step_;
-  snapshot_.goes_on = !changed.all() && snapshot_.number > 0;
+  const bool is_known = !changed.all() && snapshot_.number > 0;
+  const bool others = std::exchange(notes_.others, false) && is_known && regroup_snapshot();
+  snapshot_.goes_on = is_known && !others;
   ++snapshot_.number;
   snapshot_.changed.clear();
   snapshot_.changed_contacts.clear();
   kicked_.clear();
-  if (!snapshot_.goes_on) {
+  if (!is_known) {
     snapshot_.born = snapshot_.awake = 0;
     snapshot_.bodies.clear();
     find_shown();
+    if (snapshot_.bodies.capacity() > kFewBodies + 2 * shown_) snapshot_.bodies = {};
+    snapshot_.bodies.resize(shown_, not_yet_there());
   }
   changed.for_each(table_, [&](const HostedBody& body, std::size_t place) {
     const std::uint32_t shown = shown_at(place);
@@ -102,12 +116,16 @@ const core::Snapshot& Simulation::snapshot() {
     show_state(body, shown, kick);
   });
   changed.clear();
-  if (snapshot_.goes_on) {
+  notes_.came.clear();
+  snapshot_.step = step_;
+  if (is_known) {
     list_changed_contacts();
   } else {
     list_contacts();
-    joints_.list_pairs(table_, snapshot_.joints);
     leave_out_guests(snapshot_.contacts);
+  }
+  if (!snapshot_.goes_on) {
+    joints_.list_pairs(table_, snapshot_.joints);
     leave_out_guests(snapshot_.joints);
   }
   steps_since_snapshot_ = 0;
@@ -120,13 +138,70 @@ const core::Snapshot& Simulation::snapshot() {
 /// Lays out a snapshot of all bodies but guests.
 void Simulation::find_shown() {
   shown_at_.clear();
-  std::uint32_t next = static_cast<std::uint32_t>(table_.size());
-  if (coupling_ != nullptr) {
-    next = 0;
-    for (const HostedBody& body : table_.bodies()) shown_at_.push_back(is_guest(*body.rigid) ? kNotShown : next++);
+  shown_ = static_cast<std::uint32_t>(table_.size());
+  if (coupling_ == nullptr) return;
+  shown_ = 0;
+  for (const HostedBody& body : table_.bodies()) shown_at_.push_back(body.is_guest ? kNotShown : shown_++);
+}
+
+/// What moved_ and moved_contacts_ say of places holds no more.
+void Simulation::forget_moved() {
+  if (!moved_.empty()) notes_.for_snapshot.note_all();
+}
+
+/// Brings the places of the snapshot's bodies up to date after bodies have come or gone. States and contacts of the
+/// others stay. Returns false if only guests have come and gone.
+bool Simulation::regroup_snapshot() {
+  find_shown();
+  const bool any_came = list_contacts_of_arrivals();
+  std::vector<core::BodyState>& bodies = snapshot_.bodies;
+  std::vector<std::uint32_t> gone, came;
+  std::vector<core::BodyId> ids_of_came;
+  const auto place_of = [&bodies](core::BodyId id) {
+    return static_cast<std::uint32_t>(std::ranges::lower_bound(bodies, id, {}, &core::BodyState::id) - bodies.begin());
+  };
+  std::size_t near = 0;
+  for (const core::BodyId id : notes_.for_snapshot.ids()) {
+    const std::uint32_t before = place_of(id);
+    const bool was = before < bodies.size() && bodies[before].id == id;
+    const HostedBody* const body = table_.find(id, near);
+    const bool is = body != nullptr && !body->is_guest;
+    if (is && !was) ids_of_came.push_back(id);
+    if (is || !was) continue;
+    gone.push_back(before);
+    if (bodies[before].birth <= snapshot_.step) count(bodies[before], -1);
   }
-  if (snapshot_.bodies.capacity() > kFewBodies + 2 * next) snapshot_.bodies = {};
-  snapshot_.bodies.resize(next);
+  if (gone.empty() && ids_of_came.empty()) return any_came;
+  for (const core::BodyId id : ids_of_came) {
+    const auto gone_before = std::ranges::lower_bound(gone, place_of(id)) - gone.begin();
+    came.push_back(static_cast<std::uint32_t>(place_of(id) - gone_before + came.size()));
+  }
+  const std::vector<std::uint32_t> now_at = core::indices_after(bodies.size(), gone, came);
+  core::regroup(bodies, gone, came, not_yet_there());
+  for (std::size_t i = 0; i < came.size(); ++i) bodies[came[i]].id = ids_of_came[i];
+  for (core::Contact& pair : snapshot_.contacts) pair = {now_at[pair.a], now_at[pair.b]};
+  std::erase_if(snapshot_.contacts,
+                [](const core::Contact& pair) { return pair.a == core::kGone || pair.b == core::kGone; });
+  return true;
+}
+
+/// Notes the contacts of the bodies that have come or been born. They may have come with contacts, and sleep. Returns
+/// false if there are none but guests.
+bool Simulation::list_contacts_of_arrivals() {
+  core::keep_one_of_each(notes_.came);
+  std::vector<const btRigidBody*> bodies;
+  for (const core::BodyId id : notes_.came) {
+    const HostedBody* const body = table_.find(id);
+    if (body == nullptr || body->is_guest) continue;
+    bodies.push_back(body->rigid.get());
+    moved_.push_back(static_cast<std::uint32_t>(bodies.back()->getUserIndex()));
+  }
+  if (bodies.empty()) return false;
+  world_.for_each_contact(bodies, [this](const ContactView& contact, std::size_t, std::size_t) {
+    const auto [a, b] = std::minmax({contact.body0().getUserIndex(), contact.body1().getUserIndex()});
+    if (!is_static(a)) moved_contacts_.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
+  });
+  return true;
 }
 
 /// Turns places in the table into places in the snapshot. Pairs with a guest are left out.
@@ -139,16 +214,16 @@ void Simulation::leave_out_guests(std::vector<core::Contact>& pairs) const {
 /// Writes a body's state to its place in the snapshot, and counts it.
 void Simulation::show_state(const HostedBody& body, std::size_t place, double coming_kick_m_s) {
   core::BodyState& state = snapshot_.bodies[place];
-  if (snapshot_.goes_on && body.born) {
-    --snapshot_.born;
-    snapshot_.awake -= state.awake ? 1 : 0;
-  }
+  if (state.birth <= snapshot_.step) count(state, -1);  // in the snapshot before, whose step is still here
   state = body.state();
   state.coming_kick_m_s = coming_kick_m_s;
   state.awake = state.awake || coming_kick_m_s > 0;
-  if (!body.born) return;
-  ++snapshot_.born;
-  snapshot_.awake += state.awake ? 1 : 0;
+  if (body.born) count(state, 1);
+}
+
+void Simulation::count(const core::BodyState& state, std::int64_t times) {
+  snapshot_.born = static_cast<std::size_t>(static_cast<std::int64_t>(snapshot_.born) + times);
+  if (state.awake) snapshot_.awake = static_cast<std::size_t>(static_cast<std::int64_t>(snapshot_.awake) + times);
 }
 
 /// Lists the contacts of the snapshot in order. Uses a counting sort, because manifolds come in no order and each body

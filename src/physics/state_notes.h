@@ -18,7 +18,9 @@ using TouchedPair = std::pair<core::ObjectRef, core::ObjectRef>;
 struct StateNotes {
   StateNotes() { for_borders.note_all(); }
 
-  ChangedBodies for_snapshot;      ///< since the last snapshot; all: bodies have come, gone or been born
+  ChangedBodies for_snapshot;      ///< since the last snapshot
+  bool others = false;             ///< since the last snapshot, bodies have come, gone or been born
+  std::vector<core::BodyId> came;  ///< those that have come or been born
   ChangedBodies for_hash;          ///< since the last hash
   ChangedBodies for_step;          ///< since the last step began, and in it
   ChangedBodies for_borders;       ///< since a coupled world last looked for bodies near borders; else always all
@@ -47,7 +49,9 @@ struct StateNotes {
   }
   /// A body has come, or is born.
   void note_new(core::BodyId id) {
-    for_snapshot.note_all();
+    for_snapshot.note(id);
+    others = true;
+    came.push_back(id);
     for_hash.note(id);
     for_step.note(id);
     for_borders.note(id);
@@ -55,7 +59,8 @@ struct StateNotes {
     parted.note(id);
   }
   void note_gone(core::BodyId id) {
-    for_snapshot.note_all();
+    for_snapshot.note(id);
+    others = true;
     for_copy.note(id);
     parted.note(id);
   }

@@ -1,8 +1,10 @@
 // A world looks at changed bodies only for its snapshots and hashes. What it keeps of the others must be what they are.
 #include <algorithm>
 #include <random>
+#include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -87,12 +89,36 @@ class Shown {
     ASSERT_TRUE(same_contacts(now.joints, shown_.joints));
   }
 
-  /// A body that comes and goes makes the world look at all others.
+  /// A body that comes and goes changes nothing of the others.
   void look_at_all() {
     const core::BodyRecord stranger = body(1'000'000, kBox, {1000, 1000, 0.5});
     run_.world.add({&stranger, 1});
+    ASSERT_EQ(run_.world.snapshot().bodies.size(), shown_.bodies.size() + 1);
     run_.world.release({&stranger.id, 1});
-    const core::Snapshot& all = run_.world.snapshot();
+    expect_as_shown(run_.world.snapshot());
+    expect_all(run_.world.peek_all(), run_.world.snapshot());
+  }
+
+  /// Copies of all bodies have what the snapshot has.
+  void expect_all(const core::ClusterState& all, const core::Snapshot& now) {
+    ASSERT_EQ(all.bodies.size(), now.bodies.size());
+    for (std::size_t i = 0; i < all.bodies.size(); ++i) {
+      core::BodyState wanted = core::state_of(all.bodies[i]);
+      wanted.coming_kick_m_s = now.bodies[i].coming_kick_m_s;
+      wanted.awake = wanted.awake || wanted.coming_kick_m_s > 0;
+      ASSERT_TRUE(same_state(now.bodies[i], wanted)) << core::value_of(wanted.id);
+    }
+    std::set<std::pair<core::ObjectRef, core::ObjectRef>> pairs;
+    for (const core::ManifoldRecord& m : all.manifolds) {
+      if (std::min(m.object0, m.object1) >= 0) pairs.insert(std::minmax(m.object0, m.object1));
+    }
+    ASSERT_EQ(pairs.size(), now.contacts.size());
+    for (const core::Contact& contact : now.contacts) {
+      ASSERT_TRUE(pairs.contains({core::ref_of(now.bodies[contact.a].id), core::ref_of(now.bodies[contact.b].id)}));
+    }
+  }
+
+  void expect_as_shown(const core::Snapshot& all) {
     ASSERT_FALSE(all.goes_on);
     ASSERT_TRUE(std::ranges::equal(shown_.bodies, all.bodies, same_state));
     ASSERT_TRUE(same_contacts(shown_.contacts, all.contacts));

@@ -119,8 +119,8 @@ class SoftIslands {
   enum State : std::uint8_t {
     kSleeps = 1,
     kSlept = 2,
-    kMoves = 4,  ///< it moves in the step
-    kKept = 8,   ///< it sleeps, and its touches are known or it is in forgotten_
+    kMoves = 4,       ///< it moves in the step
+    kKept = 8,        ///< it sleeps, and its touches are known or it is in forgotten_
     kForgotten = 16,  ///< it is in forgotten_
   };
   /// Of a part.
@@ -191,14 +191,14 @@ class SoftIslands {
   std::vector<std::uint8_t> parts_{0};  ///< flags Part, by the first slot of a part
   std::vector<Entry> entries_{1};
   std::vector<std::uint32_t> free_;
-  std::vector<Seam> seams_;               ///< with a body that was awake at call()
-  PairLists<Nothing> seams_of_sleepers_;  ///< with two sleepers
-  std::vector<std::uint32_t> called_;     ///< sleepers that are to wake
-  std::vector<std::uint32_t> changes_;   ///< slots of bodies that have come or were changed from outside
-  std::vector<std::uint32_t> settling_;  ///< sleepers whose flags may still change
-  std::vector<std::uint32_t> marked_;    ///< parts with flags
+  std::vector<Seam> seams_;                       ///< with a body that was awake at call()
+  PairLists<Nothing> seams_of_sleepers_;          ///< with two sleepers
+  std::vector<std::uint32_t> called_;             ///< sleepers that are to wake
+  std::vector<std::uint32_t> changes_;            ///< slots of bodies that have come or were changed from outside
+  std::vector<std::uint32_t> settling_;           ///< sleepers whose flags may still change
+  std::vector<std::uint32_t> marked_;             ///< parts with flags
   std::vector<std::uint32_t> forgotten_, found_;  ///< sleepers whose touches are not known; those found in this step
-  std::vector<std::uint32_t> order_;  ///< space for put_in_order()
+  std::vector<std::uint32_t> order_;              ///< space for put_in_order()
   bool is_in_order_ = true;
   bool wakes_any_ = false;
   bool has_woken_any_ = false;
