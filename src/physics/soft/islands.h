@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <LinearMath/btScalar.h>
 
 #include "core/block.h"
@@ -14,7 +15,6 @@
 #include "physics/soft/threads.h"
 #include "physics/soft/touch.h"
 
-class btRigidBody;
 class btTypedConstraint;
 
 namespace aurasim::physics {
@@ -26,8 +26,8 @@ namespace aurasim::physics {
 ///
 /// A step costs nothing for a sleeper. What it touches is known until a body of its part wakes, leaves, or is given
 /// another block; then only the touches of that part are found again. Whoever changes the activation state or the block
-/// of a body from outside says so (note_change() in moving_body.h). A body's user index
-/// grows with its id; a static's is negative. Nothing is allocated once warm.
+/// of a body from outside says so (note_change() in moving_body.h). A body's user index grows with its id; a static's
+/// is negative. Nothing is allocated once warm.
 class SoftIslands {
  public:
   SoftIslands() = default;
