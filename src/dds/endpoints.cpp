@@ -43,6 +43,8 @@ bool is_of_nodes(TopicId topic) { return topic == TopicId::kAura || topic == Top
 /// Bytes that a datagram has beside the payload of a sample: RTPS header, destination, time, heartbeat, statistics, and
 /// the head of the sample.
 constexpr std::uint32_t kHeaders_B = 200;
+/// Bytes that a hub adds: the id and number of the original.
+constexpr std::uint32_t kOriginal_B = 64;
 /// Bytes that keys add: heads and authentication code of the encrypted submessage, and one more code for each reader.
 constexpr std::uint32_t kCryptoHeaders_B = 128, kCryptoOfAReader_B = 20;
 
@@ -173,6 +175,7 @@ WriteResult Writer::write(void* sample) {
 /// Largest serialized sample that Fast DDS sends in one datagram.
 std::uint32_t Writer::largest_sample_B() const {
   std::size_t headers_B = kHeaders_B;
+  if (domain_.speaks_by_hub()) headers_B += kOriginal_B;
   if (domain_.has_keys()) headers_B += kCryptoHeaders_B + kCryptoOfAReader_B * watch_.readers().size();
   // Codes for many readers leave no room in a small datagram: at least half of it is for the sample.
   return domain_.datagram_B() - std::min(static_cast<std::uint32_t>(headers_B), domain_.datagram_B() / 2);

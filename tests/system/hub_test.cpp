@@ -82,6 +82,17 @@ TEST_F(AHub, LetsARegionBeTakenOverWhoseNodeDies) {
   expect_all_bodies_accounted_for(report_of("died"));
 }
 
+/// All go back to parts of the world that come by the hub, each as large as the datagrams of this profile allow.
+TEST_F(AHub, PassesOnWhatFillsADatagram) {
+  const Words in_time = set({"dds.discovery=neighbours", "time.sync=deterministic",
+                             std::string("dds.profiles=") + AURASIM_SOURCE_DIR + "/qos/hosts.xml"});
+  Process& run = launch("died", launch_file("demo"), Words{"--steps", "600"} + in_time + kSix);
+  ASSERT_NO_FATAL_FAILURE(expect_reaches(report_of("died"), 6, 120));
+  ASSERT_NO_FATAL_FAILURE(kill_node(run, 2));
+  expect_exit(run, 0);
+  expect_all_bodies_accounted_for(report_of("died"));
+}
+
 TEST_F(AHub, PassesCommandsOn) {
   Process& run = launch("steered", launch_file("demo"), set({"dds.discovery=neighbours"}));
   ASSERT_NO_FATAL_FAILURE(expect_reaches(report_of("steered"), 4, 60));
