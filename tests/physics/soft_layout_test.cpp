@@ -14,7 +14,7 @@ namespace {
 struct Contact {
   std::int32_t a, b;
   std::size_t points;
-  SoftStage stage;
+  SoftPhase phase;
   std::size_t group;
 };
 
@@ -33,7 +33,7 @@ std::vector<Contact> contacts(std::size_t cells, std::size_t count) {
     const std::int32_t a = body_of(cell), b = i % 5 == 0 ? 0 : body_of(i % 50 == 1 ? random() % cells : cell);
     if (a == b) continue;
     const bool inside = i % 50 != 1;
-    all.push_back({a, b, 1 + random() % 4, inside ? SoftStage::kInside : SoftStage::kGiants, inside ? cell : 0});
+    all.push_back({a, b, 1 + random() % 4, inside ? SoftPhase::kInside : SoftPhase::kGiants, inside ? cell : 0});
   }
   return all;
 }
@@ -46,10 +46,10 @@ struct Swept {
 
 Swept sweep(const std::vector<Contact>& all, int threads) {
   soft::Team team(threads);
-  SoftLayout layout(SoftLayout::Waits::kInEachStage);
+  SoftLayout layout(SoftLayout::Waits::kInEachPhase);
   layout.clear(kMovers, soft::kMostPoints + 1, all.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
-    layout.put(i, all[i].a, all[i].b, all[i].points, all[i].stage, all[i].group);
+    layout.put(i, all[i].a, all[i].b, all[i].points, all[i].phase, all[i].group);
   }
   std::vector<std::vector<std::size_t>> in_block(layout.place(team));
   for (std::size_t i = 0; i < all.size(); ++i) in_block[layout.block(i)].push_back(i);
@@ -83,10 +83,10 @@ TEST(SoftLayout, TheContactsOfABodyHaveOneOrderForAnyNumberOfThreads) {
   }
 }
 
-/// Stages inside, of giants and of statics, and the end of the parallel part.
-TEST(SoftLayout, ThreadsWaitOnceAStageIfNoGroupIsTooHeavy) {
+/// Phases inside, of giants and of statics, and the end of the parallel part.
+TEST(SoftLayout, ThreadsWaitOnceAPhaseIfNoGroupIsTooHeavy) {
   std::vector<Contact> all = contacts(40, 6000);
-  std::erase_if(all, [](const Contact& contact) { return contact.stage == SoftStage::kGiants; });
+  std::erase_if(all, [](const Contact& contact) { return contact.phase == SoftPhase::kGiants; });
   const Swept two = sweep(all, 2);
   EXPECT_EQ(two.load.split, 0U);
   EXPECT_EQ(two.waits, 3U);

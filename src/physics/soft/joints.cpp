@@ -85,7 +85,7 @@ void SoftJoints::build(std::size_t movers, std::span<const SoftInertia> inertias
     const auto group =
         static_cast<std::size_t>(groups_[static_cast<std::size_t>(first_of(std::max(joint.a, joint.b)))]);
     const auto kind = std::ranges::lower_bound(kinds_, joint.what) - kinds_.begin();
-    layout_.put(i, joint.a, joint.b, static_cast<std::size_t>(kind), SoftStage::kInside, group % kSoftGroups);
+    layout_.put(i, joint.a, joint.b, static_cast<std::size_t>(kind), SoftPhase::kInside, group % kSoftGroups);
   }
   blocks_.resize(layout_.place(team));
   team.side_by_side([&](const soft::Worker& worker) {

@@ -76,18 +76,6 @@ Real approach(Real opening_m_s, Real gained) {
   return -std::sqrt(std::max(Real(0), opening_m_s * opening_m_s + 2 * gained));
 }
 
-/// What a stage needs of other regions, and what they need of the stages before.
-void exchange_before(SoftStage stage, SoftExchange& shared, bool bounces, Mover* movers) {
-  const auto exchange = [&](SoftPhase phase) {
-    shared.post(phase, bounces, movers);
-    shared.fetch(phase, bounces, movers);
-  };
-  if (stage == SoftStage::kInside) shared.post(SoftPhase::kCorners, bounces, movers);
-  if (stage == SoftStage::kCorners) shared.fetch(SoftPhase::kCorners, bounces, movers);
-  if (stage == SoftStage::kEdges) exchange(SoftPhase::kEdges);
-  if (stage == SoftStage::kGiants) exchange(SoftPhase::kGiants);
-}
-
 /// Inverse of a symmetric matrix; all 0 if it has none.
 void invert(const Real (&m)[6], Real (&to)[6]) {
   const Real xx = m[3] * m[5] - m[4] * m[4], xy = m[2] * m[4] - m[1] * m[5], xz = m[1] * m[4] - m[2] * m[3];
@@ -134,10 +122,10 @@ void SoftPatches::clear(std::size_t movers, std::size_t patches) {
   layout_.clear(movers, soft::kMostPoints + 1, patches);
 }
 
-void SoftPatches::put(std::size_t i, SoftPatch& patch, std::int32_t a, std::int32_t b, SoftStage stage,
+void SoftPatches::put(std::size_t i, SoftPatch& patch, std::int32_t a, std::int32_t b, SoftPhase phase,
                       std::size_t group) {
   patches_[i] = &patch;
-  layout_.put(i, a, b, static_cast<std::size_t>(patch.count), stage, group);
+  layout_.put(i, a, b, static_cast<std::size_t>(patch.count), phase, group);
 }
 
 void SoftPatches::build(const Mover* movers, const SoftInertia* inertias, const Real (&gravity)[3], soft::Team& team) {
@@ -232,7 +220,7 @@ void SoftPatches::solve(Mover* movers, const soft::Substep& substep, SoftExchang
     soft::kernel().solve(&blocks_[first], count, static_cast<int>(points), movers, substep);
   };
   if (shared == nullptr) return layout_.sweep(worker, 1, work);
-  layout_.sweep_after(worker, work, [&](SoftStage stage) { exchange_before(stage, *shared, false, movers); });
+  layout_.sweep_after(worker, work, [&](SoftPhase phase) { shared->exchange(phase, false, movers); });
 }
 
 void SoftPatches::bounce(Mover* movers, SoftExchange* shared, const soft::Worker& worker) {
@@ -249,7 +237,7 @@ void SoftPatches::bounce(Mover* movers, SoftExchange* shared, const soft::Worker
     if (shared == nullptr) {
       layout_.sweep(worker, 1, work);
     } else {
-      layout_.sweep_after(worker, work, [&](SoftStage stage) { exchange_before(stage, *shared, true, movers); });
+      layout_.sweep_after(worker, work, [&](SoftPhase phase) { shared->exchange(phase, true, movers); });
     }
   }
 }

@@ -32,7 +32,7 @@ class SoftPatches {
   void clear(std::size_t movers, std::size_t patches);
   /// Sets the i-th patch, between two movers. The patches of an island have to come in an order that follows from the
   /// island alone. `group`: as in SoftLayout::put(). Several threads may set different patches.
-  void put(std::size_t i, SoftPatch& patch, std::int32_t a, std::int32_t b, SoftStage stage, std::size_t group);
+  void put(std::size_t i, SoftPatch& patch, std::int32_t a, std::int32_t b, SoftPhase phase, std::size_t group);
   /// Lays out all patches. `inertias`: by mover; gravity in m/s^2.
   void build(const soft::Mover* movers, const SoftInertia* inertias, const soft::Real (&gravity)[3], soft::Team& team);
 
@@ -81,7 +81,7 @@ class SoftPatches {
   soft::Real rest_m_s_ = 0;               ///< points that approach more slowly do not bounce
   soft::Real light_hertz_, heavy_hertz_;  ///< frequencies of the springs between bodies, by load
   std::vector<SoftPatch*> patches_;
-  SoftLayout layout_{SoftLayout::Waits::kInEachStage};  ///< the kind is the number of points
+  SoftLayout layout_{SoftLayout::Waits::kInEachPhase};  ///< the kind is the number of points
   std::vector<soft::Block> blocks_;
   bool tallies_ = false;
   std::vector<Sums> sums_;                ///< by block

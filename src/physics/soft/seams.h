@@ -21,27 +21,6 @@ enum class SoftPhase : std::uint8_t {
 };
 inline constexpr std::size_t kSoftPhases = 4;
 
-/// The stages of a sweep, in their order. Coupled regions send each other movers in the middle of a sweep. The groups
-/// of a phase share no body, so the order of its groups changes no bit: those that others wait for come early, and
-/// those that wait for others come late. Messages travel in between.
-enum class SoftStage : std::uint8_t { kInsideEarly, kInside, kCornersEarly, kCorners, kEdges, kGiants, kStatics };
-inline constexpr std::size_t kSoftStages = 7;
-
-/// `early`: of the phases kInside and kCorners only.
-constexpr SoftStage stage_of(SoftPhase phase, bool early = false) {
-  switch (phase) {
-    case SoftPhase::kInside:
-      return early ? SoftStage::kInsideEarly : SoftStage::kInside;
-    case SoftPhase::kCorners:
-      return early ? SoftStage::kCornersEarly : SoftStage::kCorners;
-    case SoftPhase::kEdges:
-      return SoftStage::kEdges;
-    case SoftPhase::kGiants:
-      break;
-  }
-  return SoftStage::kGiants;
-}
-
 /// The bit of a phase in a set of phases.
 inline std::uint8_t bit_of(SoftPhase phase) { return static_cast<std::uint8_t>(1U << static_cast<unsigned>(phase)); }
 

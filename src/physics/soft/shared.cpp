@@ -247,7 +247,7 @@ void SoftShared::add(const SoftTouch& touch, std::span<SoftPatch> found, std::in
     if (waits) {
       waiting_[static_cast<std::size_t>(phase)].push_back({known(a).id, known(b).id, touch.parts, a, b, &patch, 0});
     } else {
-      placed_.push_back({&patch, a, b, phase, group, false});
+      placed_.push_back({&patch, a, b, phase, group});
     }
   }
   if (!both_move || phase != SoftPhase::kEdges || known(a).host == known(b).host) return;
@@ -314,8 +314,7 @@ void SoftShared::settle(SoftPhase phase) {
   for (const Waiting& w : waiting) {
     if (!chains[w.chain].is_ours) continue;
     chains[w.chain].patches.push_back(placed_.size());
-    placed_.push_back({w.patch, w.mover_a, w.mover_b, phase, 0,
-                       !chains[w.chain].hosts.empty()});  // one group: a chain may be anywhere
+    placed_.push_back({w.patch, w.mover_a, w.mover_b, phase, 0});  // one group: a chain may be anywhere
   }
   auto& all_common = common_[static_cast<std::size_t>(phase)];
   for (const Chain& chain : chains) {

@@ -52,7 +52,6 @@ class SoftShared final : public SoftExchange {
     std::int32_t a, b;
     SoftPhase phase;
     std::size_t group;
-    bool is_common;  ///< with a body of another region, also by way of other contacts of the phase
   };
 
   void begin() { placed_.clear(); }
@@ -62,13 +61,10 @@ class SoftShared final : public SoftExchange {
   /// Places the patches that wait, with those of other regions, in an order that follows from each group alone.
   void settle();
   std::span<const Placed> placed() const { return placed_; }
-  /// Movers of our bodies that other regions need before phase kCorners. Some are there more than once.
-  std::vector<std::int32_t> awaited() const;
   /// Notes which contacts may bounce. Call after SoftPatches::build().
   void note_bounces(const SoftPatches& patches);
 
-  void post(SoftPhase phase, bool bounces, const soft::Mover* movers) override;
-  void fetch(SoftPhase phase, bool bounces, soft::Mover* movers) override;
+  void exchange(SoftPhase phase, bool bounces, soft::Mover* movers) override;
 
  private:
   /// A body of another region, as its host has told.

@@ -56,26 +56,17 @@ void SoftShared::order_rows(ByPhase<Rows>& rows, const SoftPatches* bouncing) co
   }
 }
 
-std::vector<std::int32_t> SoftShared::awaited() const {
-  std::vector<std::int32_t> movers;
-  for (const auto& [host, with] : rows_[static_cast<std::size_t>(SoftPhase::kCorners)])
-    movers.insert(movers.end(), with.ours.begin(), with.ours.end());
-  return movers;
-}
-
 void SoftShared::note_bounces(const SoftPatches& patches) { order_rows(bouncing_rows_, &patches); }
 
-void SoftShared::post(SoftPhase phase, bool bounces, const Mover* movers) {
-  for (const auto& [host, with] : (bounces ? bouncing_rows_ : rows_)[static_cast<std::size_t>(phase)]) {
+void SoftShared::exchange(SoftPhase phase, bool bounces, Mover* movers) {
+  const auto& rows = (bounces ? bouncing_rows_ : rows_)[static_cast<std::size_t>(phase)];
+  for (const auto& [host, with] : rows) {
     if (with.ours.empty()) continue;
     parcel_.clear();
     for (const std::int32_t ours : with.ours) write_row(movers[ours], parcel_);
     coupling_.mail->post(host, parcel_.bytes());
   }
-}
-
-void SoftShared::fetch(SoftPhase phase, bool bounces, Mover* movers) {
-  for (const auto& [host, with] : (bounces ? bouncing_rows_ : rows_)[static_cast<std::size_t>(phase)]) {
+  for (const auto& [host, with] : rows) {
     if (with.theirs.empty()) continue;
     const std::span<const std::byte> bytes = coupling_.mail->fetch(host);
     if (bytes.size() != with.theirs.size() * kRowBytes) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bitset>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -122,7 +121,6 @@ struct SoftStep::Impl {
   std::vector<Body> bodies;                 ///< by mover
   std::vector<SoftPlace> places;            ///< by mover
   std::vector<PushedMovers> pushes;         ///< by thread
-  std::bitset<kSoftGroups> awaited_groups;  ///< of phase kInside: other regions wait for a body of them
   std::vector<std::size_t> patches_before;  ///< by thread: number of patches of the threads before it
   SoftPatches patches;
   SoftJoints joints;
@@ -242,7 +240,7 @@ void SoftStep::Impl::take_in_patches(std::span<const SoftTouch> touches, SoftCon
       const std::int32_t a = mover_of(touches[i].a), b = mover_of(touches[i].b);
       const SoftPhase phase = phase_of(a, b);
       const std::size_t group = group_of(phase, places[static_cast<std::size_t>(std::max(0, a))]);
-      for (SoftPatch& patch : contacts.patches_of(touches[i])) patches.put(next++, patch, a, b, stage_of(phase), group);
+      for (SoftPatch& patch : contacts.patches_of(touches[i])) patches.put(next++, patch, a, b, phase, group);
     }
   });
 }
@@ -258,14 +256,10 @@ void SoftStep::Impl::take_in_shared(std::span<const SoftTouch> touches, SoftCont
   }
   shared->settle();
   const std::span<const SoftShared::Placed> placed = shared->placed();
-  awaited_groups.reset();
-  for (const std::int32_t mover : shared->awaited())
-    awaited_groups.set(group_of(SoftPhase::kInside, places[static_cast<std::size_t>(mover)]));
   patches.clear(held.size(), placed.size());
   for (std::size_t i = 0; i < placed.size(); ++i) {
     const SoftShared::Placed& one = placed[i];
-    const bool early = one.phase == SoftPhase::kInside ? awaited_groups.test(one.group) : !one.is_common;
-    patches.put(i, *one.patch, one.a, one.b, stage_of(one.phase, early), one.group);
+    patches.put(i, *one.patch, one.a, one.b, one.phase, one.group);
   }
 }
 
