@@ -99,9 +99,13 @@ ControlBus::Impl::Impl(Participant& participant_in, const ControlSettings& setti
       status_writer(status_writer_of(participant.domain(), settings.region, wakeup)),
       status_reader(participant.domain(), on(TopicId::kNodeStatus), wakeup),
       map_reader(participant.domain(), on(TopicId::kRegionMap), wakeup),
-      roster({settings.region_count, settings.agreement, settings.run, settings.region,
-              status_writer ? status_writer->guid() : Guid(), participant.stays_on_this_host(),
-              participant.domain().believes_silence()},
+      roster({.region_count = settings.region_count,
+              .agreement = settings.agreement,
+              .run = settings.run,
+              .region = settings.region,
+              .writer = status_writer ? status_writer->guid() : Guid(),
+              .stays_on_this_host = participant.stays_on_this_host(),
+              .believes_silence = participant.domain().believes_silence()},
              participant.domain().speakers()) {
   if (!settings.only_watches) {
     command_writer.emplace(participant.domain(), on(TopicId::kRunControl), wakeup);

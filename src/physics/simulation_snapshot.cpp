@@ -144,7 +144,7 @@ void Simulation::find_shown() {
   for (const HostedBody& body : table_.bodies()) shown_at_.push_back(body.is_guest ? kNotShown : shown_++);
 }
 
-/// What moved_ and moved_contacts_ say of places holds no more.
+/// The places in moved_ and moved_contacts_ are no longer those of the table.
 void Simulation::forget_moved() {
   if (!moved_.empty()) notes_.for_snapshot.note_all();
 }

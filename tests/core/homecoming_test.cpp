@@ -45,7 +45,7 @@ TEST_F(Arrival, GoesHomeAsSoonAsItIsAnIsland) {
   }
 }
 
-/// It touches a ball of our region for a while, so it begins to be an island anew.
+/// The guest touches a ball of our region for a while, so it begins to be an island anew.
 TEST_F(Arrival, GoesHomeAfterItHasBeenAnIslandWithoutABreak) {
   for (const bool checked : {false, true}) {
     SCOPED_TRACE(checked);

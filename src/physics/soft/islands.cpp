@@ -300,7 +300,7 @@ void SoftIslands::look_across(std::span<const std::uint32_t> parted) {
   };
   const auto look_across = [&touched_by](const Seam& seam) { touched_by(seam.a, seam.b), touched_by(seam.b, seam.a); };
   std::ranges::for_each(seams_, look_across);
-  // Of sleepers, only those of a part that an awake body has just joined can stir.
+  // Only sleepers of a part that an awake body has just joined can stir.
   for (std::size_t i = 0, count = wakes_any_ ? marked_.size() : 0; i < count; ++i) {
     if ((parts_[marked_[i]] & kStirs) == 0) continue;
     for_each_of_part(marked_[i], [&](std::uint32_t slot) {
