@@ -54,16 +54,34 @@ void check_each(const Field& list, std::string_view allowed, bool (*is_good)(con
   }
 }
 
-/// The hub of discovery: neighbours is found on loopback only.
+/// Checks where the hub of discovery: neighbours is found. On loopback no hub of another host is reached.
+void check_hub(const Fields& fields, const Dds& dds) {
+  const Field hub = fields["hub"];
+  if (hub.is_text() && !is_ipv4(hub.node()->text)) hub.refuse("the IPv4 address of the site's hub, such as 10.0.0.7");
+  if (dds.discovery != Discovery::kNeighbours) return;
+  if (is_on_loopback(dds)) {
+    if (hub.given() && !dds.hub.starts_with("127.")) hub.refuse("an address of loopback, as interfaces has no other");
+    if (fields.has("peers")) fields["peers"].refuse("nothing where one hub on loopback serves all");
+    return;
+  }
+  if (!hub.given()) {
+    fields["interfaces"].refuse(
+        "addresses of loopback with discovery: neighbours and no hub; name the hub of this site");
+  }
+  if (std::ranges::find(dds.interfaces, "*") != dds.interfaces.end()) {
+    fields["interfaces"].refuse("addresses with discovery: neighbours, as others are told where this process is");
+  }
+}
+
+/// Hubs of several hosts have no keys.
 void check_neighbours(const Field& field, const Dds& dds) {
   if (dds.discovery != Discovery::kNeighbours) return;
   const Fields fields(field);
-  if (!is_on_loopback(dds)) {
-    fields["interfaces"].refuse(
-        "addresses of loopback with discovery: neighbours, which is for one host only; on several hosts use multicast, "
-        "peers or server");
+  if (!dds.security.empty() && !is_on_loopback(dds)) {
+    fields["security"].refuse(
+        "nothing with discovery: neighbours on several hosts, whose hubs have no key; with keys use multicast, peers "
+        "or server there");
   }
-  if (fields.has("peers")) fields["peers"].refuse("nothing with discovery: neighbours, whose hub introduces the peers");
 }
 
 void read_dds(const Field& field, const std::filesystem::path& folder, Dds& dds) {
@@ -91,6 +109,7 @@ void read_dds(const Field& field, const std::filesystem::path& folder, Dds& dds)
   if (dds.impair.bandwidth_B_s && *dds.impair.bandwidth_B_s > 0 && *dds.impair.bandwidth_B_s < 1) {
     Fields(fields["impair"])["bandwidth"].refuse("0, or at least 1 B/s");
   }
+  check_hub(fields, dds);
   check_neighbours(field, dds);
   const bool needs_peers = dds.discovery == Discovery::kPeers || dds.discovery == Discovery::kServer;
   if (needs_peers && dds.peers.empty() && !fields.has("peers")) {

@@ -76,7 +76,9 @@ struct Dds {
   std::filesystem::path profiles;  ///< absolute, once read
   Discovery discovery = Discovery::kAuto;
   std::vector<std::string> interfaces = {"127.0.0.1"};
-  std::vector<std::string> peers;  ///< for Discovery::kPeers and kServer: "address" or "address:port"
+  /// For Discovery::kPeers and kServer, and the other hubs for Discovery::kNeighbours: "address" or "address:port".
+  std::vector<std::string> peers;
+  std::string hub;  ///< for Discovery::kNeighbours: address of the site's hub; empty: that of the first interface
   std::filesystem::path security;  ///< folder with this process's keys, absolute once read; empty: an open run
   Impair impair;
 };

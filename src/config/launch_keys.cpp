@@ -166,13 +166,20 @@ const KeysOf<Dds>& dds_keys() {
                                  {"neighbours", Discovery::kNeighbours}}),
               "multicast; peers: announcements go to the addresses in `peers`; server: Fast DDS discovery servers "
               "at `peers`; neighbours: a hub (`aurasim hub`; `launch` starts one) introduces the nodes that need each "
-              "other, for many nodes on one host; auto: multicast, but `launch` uses neighbours for more than 16 nodes "
-              "on loopback, with keys for more than 9"),
+              "other, for many nodes and for sites without multicast between them; auto: multicast, but `launch` uses "
+              "neighbours for more than 16 nodes on loopback, with keys for more than 9"),
           optional("interfaces", &Dds::interfaces, list(1, 256, text("an address")),
                    "own addresses that may carry traffic; [\"*\"]: all of them. The default never leaves the machine"),
-          optional("peers", &Dds::peers, list(1, 256, text("an address")),
-                   "ADDRESS or ADDRESS:PORT; required with discovery: peers and server")
+          optional(
+              "peers", &Dds::peers, list(1, 256, text("an address")),
+              "ADDRESS or ADDRESS:PORT; required with discovery: peers and server. With neighbours: the hubs of the "
+              "other sites, which only a hub needs to know")
               .otherwise("none"),
+          optional(
+              "hub", &Dds::hub, text("an address"),
+              "with discovery: neighbours, where the hub of this site is; required with interfaces that are not of "
+              "loopback")
+              .otherwise("on loopback"),
           optional("security", text("a folder"),
                    "keys made by `aurasim keys`, relative to this file: only a process that has one joins the run, and "
                    "messages are encrypted")

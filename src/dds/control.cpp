@@ -45,6 +45,12 @@ bool is_old_news(const messages::RunCommand& command, const Origin& origin) {
   return is_of_nodes && origin.clock_ahead < -kLongAgo;
 }
 
+/// Longer than a hub may be cut off without DDS noticing it, and than it takes then until statuses come again.
+std::chrono::nanoseconds silence_by_hub(const Reader& statuses, std::uint32_t regions) {
+  constexpr int kPeriods = 5;
+  return statuses.believed_silence() + kPeriods * messages::status_period(regions);
+}
+
 std::optional<Writer> status_writer_of(Domain& domain, std::optional<RegionId> region, Wakeup& wakeup) {
   if (!region) return std::nullopt;
   return std::optional<Writer>(std::in_place, domain, on(TopicId::kNodeStatus, {.source = region}, region), wakeup);
@@ -105,7 +111,8 @@ ControlBus::Impl::Impl(Participant& participant_in, const ControlSettings& setti
               .region = settings.region,
               .writer = status_writer ? status_writer->guid() : Guid(),
               .stays_on_this_host = participant.stays_on_this_host(),
-              .believes_silence = participant.domain().believes_silence()},
+              .believes_silence = participant.domain().believes_silence(),
+              .silence_by_hub = silence_by_hub(status_reader, settings.region_count)},
              participant.domain().speakers()) {
   if (!settings.only_watches) {
     command_writer.emplace(participant.domain(), on(TopicId::kRunControl), wakeup);

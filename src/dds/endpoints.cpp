@@ -308,6 +308,7 @@ Reader::Reader(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
     if (is_renewed_sparsely(domain.nodes(), domain.believes_silence()))
       be_patient(qos.liveliness().lease_duration, kSparseLease);
     const std::chrono::nanoseconds lease(qos.liveliness().lease_duration.to_ns());
+    believed_silence_ = lease + lease / 2;
     watch_.set_grace(domain.believes_silence() ? lease / 2 : ReaderWatch::kForEver);
   }
   reader_ = subscriber_->create_datareader(

@@ -136,6 +136,8 @@ class Reader {
   void ration(const Origin& origin, const std::string& what);
 
   const ReaderWatch& watch() const { return watch_; }
+  /// How long a writer is silent before that is believed: one and a half leases.
+  std::chrono::nanoseconds believed_silence() const { return believed_silence_; }
   /// Partitions of the reader, from its QoS.
   std::vector<std::string> partitions() const;
 
@@ -150,6 +152,7 @@ class Reader {
   std::uint64_t lost_ = 0;
   Wakeup& wakeup_;
   bool is_from_hub_ = false;
+  std::chrono::nanoseconds believed_silence_{0};
   SeenNumbers by_hub_;
   std::optional<EndpointSpec> spec_from_hub_;  ///< nothing: a hub does not pass on such messages, or they are read
   std::unique_ptr<Reader> from_hub_;           ///< of what a hub passes on in a run with keys

@@ -62,8 +62,8 @@ class Socket {
 };
 
 std::string why_no_second(const Settings& settings) {
-  return fmt::format("DDS domain {} already has a hub{}, or another program has its UDP port {}", settings.domain,
-                     settings.keys ? " with keys" : "", hub_port(settings));
+  return fmt::format("DDS domain {} already has a hub{} at {}, or another program has its UDP port {}", settings.domain,
+                     settings.keys ? " with keys" : "", hub_address(settings), hub_port(settings));
 }
 
 /// A name on this host that one process has at a time. Fast DDS shares its ports, so two hubs that start in the same
@@ -73,7 +73,7 @@ class Claim {
   explicit Claim(const Settings& settings) : fd_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
     ::sockaddr_un address{};
     address.sun_family = AF_UNIX;
-    const std::string name = fmt::format("aurasim hub {}", hub_port(settings));
+    const std::string name = fmt::format("aurasim hub {} {}", hub_port(settings), hub_address(settings));
     name.copy(&address.sun_path[1], name.size());  // it begins with a zero byte: a name without a file
     const auto size = static_cast<::socklen_t>(offsetof(::sockaddr_un, sun_path) + 1 + name.size());
     if (fd_ >= 0 && ::bind(fd_, reinterpret_cast<const ::sockaddr*>(&address), size) == 0) return;  // NOLINT
@@ -90,7 +90,7 @@ class Claim {
 
 MeetingPoint point_of(const Settings& settings) {
   ::in_addr address{};
-  ::inet_pton(AF_INET, settings.interfaces.empty() ? "127.0.0.1" : settings.interfaces.front().c_str(), &address);
+  ::inet_pton(AF_INET, hub_address(settings).c_str(), &address);
   return {ntohl(address.s_addr), hub_port(settings)};
 }
 

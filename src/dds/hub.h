@@ -1,6 +1,6 @@
-// The hub of a run with `dds.discovery: neighbours`. All processes of the run announce themselves to it alone. It
-// introduces those to each other that have matching endpoints, and passes on what nodes say to all nodes, so that these
-// need not meet (docs/decisions/0052).
+// The hub of a run with `dds.discovery: neighbours`, or of one of its sites. All processes of the site announce
+// themselves to it alone. It introduces those to each other that have matching endpoints, and passes on what nodes say
+// to all nodes, so that these need not meet (docs/decisions/0052, 0056).
 #pragma once
 
 #include <chrono>
@@ -13,12 +13,13 @@ namespace aurasim::dds {
 
 class Hub {
  public:
-  /// Joins the domain as its hub; `settings.introductions` is not used. Throws DdsError when the domain has a hub, or
-  /// if it cannot be joined.
+  /// Joins the domain as the hub at `settings.hub`, with the hubs of other sites at `settings.peers`;
+  /// `settings.introductions` is not used. Throws DdsError when there is one at this address, or if the domain cannot
+  /// be joined.
   explicit Hub(Settings settings);
   ~Hub();
 
-  /// True if another process has the port of the domain's hub.
+  /// True if another process has the port of the hub, or its address is not one of this host.
   static bool is_there(const Settings& settings);
 
   /// Waits until something has come, at most `time_out`, and passes it on.

@@ -92,7 +92,7 @@ void NodeRoster::note(messages::Status fresh, const Origin& origin) {
     found = of_region.insert(found, {origin.writer, origin.by_hub, {}, {}, {}});
   }
   found->seen.status = std::move(fresh);
-  found->seen.seen = std::chrono::steady_clock::now();
+  found->seen.seen = settings_.now();
   found->seen.host = host_of(origin.writer);
   found->clock_ahead.push_back(origin.clock_ahead);
   if (found->clock_ahead.size() > kSamplesOfAClock) found->clock_ahead.pop_front();
@@ -102,6 +102,7 @@ void NodeRoster::note(messages::Status fresh, const Origin& origin) {
 void NodeRoster::look(const std::vector<RemoteWriter>& writers) {
   has_death_ = false;
   fresh_.clear();
+  hub_silence_.look(writers, speakers_, settings_.now());
   for (auto& [region, of_region] : received_) look_at(region, of_region, writers);
 }
 
@@ -114,7 +115,7 @@ void NodeRoster::look_at(RegionId region, std::vector<Received>& of_region, cons
   for (Received& one : of_region) {
     if (claimed_.contains(one.seen.status.process) && shows_no_life(one)) dead_.insert(one.seen.status.process);
     one.seen.dead = dead_.contains(one.seen.status.process);
-    if (one.by_hub && !shows_no_life(one)) one.alive = std::chrono::steady_clock::now();
+    if (one.by_hub && !shows_no_life(one)) one.alive = settings_.now();
     one.seen.lost = one.seen.dead || is_lost(one, find(writers, one.writer));
   }
   if (is_region(region)) choose_publisher(region, of_region);
@@ -139,10 +140,9 @@ void NodeRoster::choose_publisher(RegionId region, const std::vector<Received>& 
 }
 
 bool NodeRoster::is_lost(const Received& one, const RemoteWriter* writer) const {
-  if (one.by_hub) {
-    const auto grace = settings_.stays_on_this_host ? settings_.until_last_word : std::chrono::nanoseconds(0);
-    return shows_no_life(one) && std::chrono::steady_clock::now() >= one.alive + grace;
-  }
+  if (one.by_hub && settings_.stays_on_this_host)
+    return shows_no_life(one) && settings_.now() >= one.alive + settings_.until_last_word;
+  if (one.by_hub) return hub_silence_.is_believed(one.seen.seen, settings_.silence_by_hub, settings_.now());
   if (writer == nullptr || writer->lost) return true;
   return !settings_.believes_silence && writer->silent_since && shows_no_life(one);
 }
@@ -151,7 +151,8 @@ bool NodeRoster::is_lost(const Received& one, const RemoteWriter* writer) const 
 bool NodeRoster::shows_no_life(const Received& one) const {
   if (!settings_.stays_on_this_host) {
     const auto limit = kShowsNoLife * messages::status_period(settings_.region_count);
-    return std::chrono::steady_clock::now() > one.seen.seen + limit;
+    if (one.by_hub) return hub_silence_.is_believed(one.seen.seen, limit, settings_.now());
+    return settings_.now() > one.seen.seen + limit;
   }
   const auto pid = static_cast<::pid_t>(one.seen.status.pid);
   return pid <= 0 || (::kill(pid, 0) != 0 && errno == ESRCH);

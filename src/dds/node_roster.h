@@ -5,13 +5,16 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dds/endpoints.h"
+#include "dds/hub_silence.h"
 #include "dds/speakers.h"
 #include "dds/watch.h"
 #include "messages/control_messages.h"
@@ -28,12 +31,15 @@ struct RosterSettings {
   /// A process of this host whose statuses come by a hub, and that has been alive, counts as lost so long after its
   /// end. Its last word, that it has finished, may come from the hub that late on a busy host.
   std::chrono::nanoseconds until_last_word = std::chrono::seconds(2);
+  /// On several hosts: how long no status has come by a hub before a node is lost (hub_silence.h).
+  std::chrono::nanoseconds silence_by_hub{0};
+  std::function<std::chrono::steady_clock::time_point()> now = std::chrono::steady_clock::now;
 };
 
 /// Used by one thread. `speakers` must outlive it.
 class NodeRoster {
  public:
-  NodeRoster(RosterSettings settings, Speakers& speakers) : settings_(settings), speakers_(speakers) {}
+  NodeRoster(RosterSettings settings, Speakers& speakers) : settings_(std::move(settings)), speakers_(speakers) {}
 
   /// Returns why `status` cannot be a node's status of itself. Empty: it can.
   std::string problem_with(const messages::Status& status, const Origin& origin) const;
@@ -86,6 +92,7 @@ class NodeRoster {
 
   RosterSettings settings_;
   Speakers& speakers_;
+  HubSilence hub_silence_;
   bool has_death_ = false;          ///< one was reported since the last look
   std::set<core::RegionId> fresh_;  ///< regions of which statuses have come since the last look
   std::map<core::RegionId, std::vector<Received>> received_;  ///< processes in the order of their first samples

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 
 #include <fastdds/rtps/transport/TransportInterface.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
@@ -20,6 +21,7 @@ using eprosima::fastrtps::rtps::Locator_t;
 namespace {
 
 constexpr std::uint16_t kDiscoveryServerPort = 11811;
+constexpr const char* kLoopback = "127.0.0.1";
 constexpr const char* kMulticastGroup = "239.255.0.1";  ///< of RTPS, for announcements
 /// A part of a message has to fit into a datagram with all headers. On a link with smaller packets IP fragments.
 constexpr std::uint32_t kSmallestDatagram_B = 1200;
@@ -93,24 +95,41 @@ void set_peers(DomainParticipantQos& qos, const Settings& settings) {
   }
 }
 
-/// Makes the participant announce itself to the hub only. The hub itself listens where all look for it, and to
-/// multicast, where it announces itself: so it meets tools and clients that know nothing of hubs.
-void set_hub(DomainParticipantQos& qos, const Settings& settings) {
-  const std::string address = settings.interfaces.empty() ? "127.0.0.1" : settings.interfaces.front();
-  const Locator_t hub = locator_of(address, hub_port(settings));
-  const bool is_hub = settings.introductions != nullptr;
+/// Own addresses, where others send announcements to at `port`; 0: the port of this participant.
+void listen_at(eprosima::fastrtps::rtps::LocatorList_t& own, const std::vector<std::string>& addresses,
+               std::uint16_t port) {
+  own.clear();
+  for (const std::string& address : addresses) own.push_back(locator_of(address, port));
+}
+
+/// Makes the hub listen where its site looks for it, and announce itself to the hubs of the other sites. On loopback it
+/// is also on multicast: so it meets tools and clients that know nothing of hubs.
+void set_own_hub(DomainParticipantQos& qos, const Settings& settings) {
+  const std::string address = hub_address(settings);
+  const std::uint16_t port = hub_port(settings);
   auto& builtin = qos.wire_protocol().builtin;
-  builtin.initialPeersList.clear();
-  builtin.metatrafficUnicastLocatorList.clear();
-  builtin.initialPeersList.push_back(hub);
-  builtin.metatrafficUnicastLocatorList.push_back(is_hub ? hub : locator_of(address, 0));
-  if (!is_hub) return;
+  std::vector<std::string> own = {address};
+  std::ranges::copy_if(settings.interfaces, std::back_inserter(own), [&](const auto& one) { return one != address; });
+  listen_at(builtin.metatrafficUnicastLocatorList, own, port);
+  builtin.initialPeersList.push_back(locator_of(address, port));  // an empty list would mean multicast
+  for (const std::string& peer : settings.peers) builtin.initialPeersList.push_back(locator_of(peer, port));
   qos.user_data().setValue({kHubUserData.begin(), kHubUserData.end()});
+  if (!address.starts_with("127.")) return;
   Locator_t everybody;
-  eprosima::fastrtps::rtps::IPLocator::createLocator(
-      LOCATOR_KIND_UDPv4, kMulticastGroup, qos.wire_protocol().port.getMulticastPort(settings.domain), everybody);
+  IPLocator::createLocator(LOCATOR_KIND_UDPv4, kMulticastGroup,
+                           qos.wire_protocol().port.getMulticastPort(settings.domain), everybody);
   builtin.metatrafficMulticastLocatorList.push_back(everybody);
   builtin.initialPeersList.push_back(everybody);
+}
+
+/// Makes the participant announce itself to the hub of its site only.
+void set_hub(DomainParticipantQos& qos, const Settings& settings) {
+  auto& builtin = qos.wire_protocol().builtin;
+  builtin.initialPeersList.clear();
+  if (settings.introductions != nullptr) return set_own_hub(qos, settings);
+  builtin.initialPeersList.push_back(locator_of(hub_address(settings), hub_port(settings)));
+  const std::vector<std::string> loopback = {kLoopback};
+  listen_at(builtin.metatrafficUnicastLocatorList, settings.interfaces.empty() ? loopback : settings.interfaces, 0);
 }
 
 /// Sets discovery by `fast-discovery-server -i N`, where N is the position in the list. As a super client the
@@ -203,6 +222,11 @@ std::uint16_t hub_port(const Settings& settings) {
   const eprosima::fastrtps::rtps::PortParameters ports;
   return static_cast<std::uint16_t>(ports.portBase + ports.domainIDGain * settings.domain +
                                     (settings.keys ? kOfHubWithKeys : kOfHub));
+}
+
+std::string hub_address(const Settings& settings) {
+  if (!settings.hub.empty()) return settings.hub;
+  return settings.interfaces.empty() ? kLoopback : settings.interfaces.front();
 }
 
 void make_room_for_handshakes(DomainParticipantQos& qos) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
@@ -21,6 +22,9 @@ inline constexpr std::string_view kHubUserData = "aurasim hub";
 /// UDP port at which the hub of a run receives announcements (Discovery::kNeighbours). No participant of the domain has
 /// this port by itself. A run with keys has another one, so that an open run beside it may have a hub, too.
 std::uint16_t hub_port(const Settings& settings);
+
+/// Address at which it does so.
+std::string hub_address(const Settings& settings);
 
 /// Largest datagram that all transports send, bytes, without the headers of IP and UDP.
 std::uint32_t largest_datagram_B(const eprosima::fastdds::dds::DomainParticipantQos& qos);

@@ -32,7 +32,10 @@ struct Settings {
   config::Discovery discovery = config::Discovery::kAuto;
   /// Set in the hub of Discovery::kNeighbours: who is to be introduced to whom.
   std::shared_ptr<Introductions> introductions;
-  std::vector<std::string> peers;  ///< "address" or "address:port" (UDP); replaces the profile's initial peers
+  /// "address" or "address:port" (UDP); replaces the profile's initial peers. For a hub: the hubs of other sites.
+  std::vector<std::string> peers;
+  std::string
+      hub;  ///< address of the site's hub (Discovery::kNeighbours); empty: the first of `interfaces`, or loopback
   /// Overrides the profile's properties aurasim.impair.*.
   ImpairmentOverrides impairment;
   /// Separates the random numbers of participants. Each participant of a run uses a different value, so that they lose

@@ -33,6 +33,7 @@ void ReaderWatch::on_subscription_matched(eprosima::fastdds::dds::DataReader*,
       writer.guid = guid;
       if (region_of_) writer.region = region_of_(guid);
       writer.order = ++order_;
+      writer.since = std::chrono::steady_clock::now();
       writers_.push_back(writer);
     } else if (RemoteWriter* writer = find_matched(guid)) {
       writer->matched = false;
@@ -55,10 +56,9 @@ void ReaderWatch::on_liveliness_changed(eprosima::fastdds::dds::DataReader*,
     }
     ++changes_;
     writer->alive = status.alive_count_change > 0;
-    writer->silent_since.reset();
-    if (!writer->alive) {
-      writer->silent_since = std::chrono::steady_clock::now();
-    }
+    const auto now = std::chrono::steady_clock::now();
+    if (writer->alive && std::exchange(writer->silent_since, std::nullopt)) writer->since = now;
+    if (!writer->alive) writer->silent_since = now;
   }
   wakeup_.notify();
 }

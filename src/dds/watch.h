@@ -33,6 +33,7 @@ struct RemoteWriter {
   bool alive = false;  ///< has proved its life and the proof has not run out
   /// Time when its proof of life ran out. Nothing while it is valid, or before the first one.
   std::optional<std::chrono::steady_clock::time_point> silent_since;
+  std::chrono::steady_clock::time_point since;  ///< when it was matched, or came back from its last silence
   /// Unmatched, or silent for longer than the grace time. Only set in copies that ReaderWatch returns.
   bool lost = false;
 };

@@ -18,6 +18,7 @@ dds::Settings dds_settings(const config::Launch& launch, std::optional<core::Reg
   settings.profiles = launch.dds.profiles;
   settings.interfaces = launch.dds.interfaces;
   settings.peers = launch.dds.peers;
+  settings.hub = launch.dds.hub;
   const config::Impair& impair = launch.dds.impair;
   settings.impairment = {impair.delay_s, impair.jitter_s,  impair.loss, impair.bandwidth_B_s,
                          impair.reorder, impair.discovery, impair.seed};

@@ -208,16 +208,23 @@ observe: {tick_hz: 30}
   EXPECT_EQ(launch.observe.tick_hz, 30);
 }
 
-TEST(LaunchFile, HasNeighboursOnlyOnLoopback) {
+TEST(LaunchFile, HasNeighboursOnLoopbackOrByAHubThatIsNamed) {
   Workspace workspace;
   const auto read = [&](const std::string& dds) { return workspace.launch(kSmallLaunch + ("dds: " + dds + "\n")); };
   EXPECT_EQ(read("{discovery: neighbours}").dds.discovery, Discovery::kNeighbours);
   EXPECT_EQ(read("{discovery: neighbours, interfaces: [127.0.0.2]}").dds.discovery, Discovery::kNeighbours);
   EXPECT_THROW(read("{discovery: neighbours, interfaces: [10.0.0.1]}"), BadConfig);
-  EXPECT_THROW(read("{discovery: neighbours, interfaces: [\"*\"]}"), BadConfig);
   EXPECT_THROW(read("{discovery: neighbours, peers: [127.0.0.1]}"), BadConfig);
+  EXPECT_THROW(read("{discovery: neighbours, hub: 10.0.0.1}"), BadConfig) << "interfaces has loopback only";
+  const Dds site = read("{discovery: neighbours, interfaces: [10.0.0.2], hub: 10.0.0.1, peers: [10.0.1.1]}").dds;
+  EXPECT_EQ(site.hub, "10.0.0.1");
+  EXPECT_EQ(site.peers, std::vector<std::string>{"10.0.1.1"});
+  EXPECT_THROW(read("{discovery: neighbours, interfaces: [\"*\"], hub: 10.0.0.1}"), BadConfig);
+  EXPECT_THROW(read("{discovery: neighbours, interfaces: [10.0.0.2], hub: hub.example}"), BadConfig);
+  EXPECT_THROW(read("{discovery: multicast, hub: hub.example}"), BadConfig);
   workspace.write("keys/ca.pem", "");
   EXPECT_EQ(read("{discovery: neighbours, security: keys}").dds.discovery, Discovery::kNeighbours);
+  EXPECT_THROW(read("{discovery: neighbours, interfaces: [10.0.0.2], hub: 10.0.0.1, security: keys}"), BadConfig);
 }
 
 TEST(LaunchFile, SaysOfTheNetworkOnlyWhatItWasTold) {

@@ -100,6 +100,17 @@ TEST_F(Introducing, ThoseWhoSpeakByTheHubAloneAreNotIntroduced) {
   EXPECT_EQ(introduced(1s), Pairs{});
 }
 
+/// What passes between two sites: each hub knows the other one, and announces its own nodes to it.
+TEST_F(Introducing, HubsOfOtherSitesMeetTheNodesOfThisOne) {
+  for (const std::uint8_t number : {1, 2, 9}) join(number);
+  add_writer(1, {"hub/region/1"}, "node_status");
+  add_writer(9, {"region/*", "region/hub"}, "node_status");
+  add_reader(9, {"hub/*"}, "node_status");
+  EXPECT_EQ(introduced(1s), (Pairs{{1, 9}, {9, 1}})) << "the other hub (9) reads what its nodes say";
+  add_reader(2, {"region/*"}, "node_status");
+  EXPECT_EQ(introduced(1s + 10ms), (Pairs{{2, 9}, {9, 2}})) << "and speaks to all";
+}
+
 TEST_F(Introducing, EndpointsThatComeWhileTheRunGoesOnMatchToo) {
   join(1);
   join(2);

@@ -1,8 +1,10 @@
 // When a look at the roster shows something new, without DDS.
 #include "dds/node_roster.h"
 
+#include <chrono>
 #include <csignal>
 #include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -122,6 +124,129 @@ TEST_F(ARoster, WaitsForTheLastWordOfAProcessThatHasEndedWhereItComesByAHub) {
   std::this_thread::sleep_for(here.until_last_word);
   roster.look({});
   EXPECT_TRUE(roster.statuses().at(RegionId{1}).lost);
+}
+
+/// Statuses that come by hubs of several hosts, in virtual time. Hubs are processes 101 and 102.
+class ARosterByHubs : public ARoster {
+ protected:
+  ARosterByHubs() {
+    for (const unsigned char hub : {101, 102}) speakers_.add_hub(writer_of(hub).guidPrefix);
+  }
+  static constexpr auto kSilence = std::chrono::milliseconds(15500);
+  RosterSettings here() {
+    RosterSettings here = settings();
+    here.silence_by_hub = kSilence;
+    here.now = [this] { return now_; };
+    return here;
+  }
+  void receive_status_by_hub(std::uint32_t region, unsigned char process) {
+    messages::Status status;
+    status.region = RegionId{region};
+    status.process = process;
+    Origin origin;
+    origin.writer = writer_of(process);
+    origin.by_hub = true;
+    roster_.note(status, origin);
+  }
+  void hub_comes(unsigned char number) {
+    hubs_.push_back(live_writer(number));
+    hubs_.back().since = now_;
+  }
+  /// Looks several times a second; meanwhile statuses come of `heard`, which is process and region.
+  void pass(std::chrono::milliseconds time, const std::vector<unsigned char>& heard) {
+    for (const auto end = now_ + time; now_ < end; now_ += std::chrono::milliseconds(100)) {
+      for (const unsigned char one : heard) receive_status_by_hub(one, one);
+      roster_.look(hubs_);
+    }
+  }
+  bool is_lost(std::uint32_t region) const { return roster_.statuses().at(RegionId{region}).lost; }
+
+  std::chrono::steady_clock::time_point now_{std::chrono::hours(1)};
+  std::vector<RemoteWriter> hubs_;
+  NodeRoster roster_{here(), speakers_};
+};
+
+TEST_F(ARosterByHubs, TakesANodeForLostOfWhichNoHubPassesAnythingOn) {
+  hub_comes(101);
+  pass(std::chrono::seconds(5), {1, 2});
+  pass(kSilence - std::chrono::milliseconds(200), {1});
+  EXPECT_FALSE(is_lost(2)) << "a hub may have been cut off, without anybody noticing it";
+  pass(std::chrono::milliseconds(500), {1});
+  EXPECT_TRUE(is_lost(2));
+  EXPECT_FALSE(is_lost(1));
+  pass(std::chrono::milliseconds(100), {1, 2});
+  EXPECT_FALSE(is_lost(2)) << "it is back";
+}
+
+TEST_F(ARosterByHubs, TakesNobodyForLostWhileNoHubIsThere) {
+  hub_comes(101);
+  pass(std::chrono::seconds(5), {1, 2});
+  hubs_[0].matched = false;
+  pass(std::chrono::minutes(5), {});
+  EXPECT_FALSE(is_lost(1));
+  EXPECT_FALSE(is_lost(2));
+}
+
+TEST_F(ARosterByHubs, TakesNobodyForLostWhileTheHubIsSilent) {
+  hub_comes(101);
+  pass(std::chrono::seconds(5), {1, 2});
+  hubs_[0].silent_since = now_;  // not believed yet by the watch, whose grace goes on
+  pass(std::chrono::minutes(5), {});
+  EXPECT_FALSE(is_lost(1));
+}
+
+TEST_F(ARosterByHubs, GivesANewHubTimeToMeetTheNodes) {
+  hub_comes(101);
+  pass(std::chrono::seconds(5), {1, 2});
+  hubs_.clear();
+  pass(std::chrono::minutes(1), {});
+  hub_comes(102);
+  pass(kSilence - std::chrono::seconds(1), {});
+  EXPECT_FALSE(is_lost(2)) << "it has to announce itself to the hub first";
+  pass(std::chrono::seconds(2), {1});
+  EXPECT_TRUE(is_lost(2)) << "it died while no hub was there";
+  EXPECT_FALSE(is_lost(1));
+}
+
+TEST_F(ARosterByHubs, TakesNobodyForLostBecauseOneOfTwoHubsIs) {
+  hub_comes(101);
+  hub_comes(102);
+  pass(std::chrono::seconds(5), {1, 2});
+  hubs_[0].matched = false;
+  pass(std::chrono::minutes(5), {1, 2});
+  EXPECT_FALSE(is_lost(1));
+  pass(std::chrono::minutes(1), {1});
+  EXPECT_TRUE(is_lost(2)) << "the other hub would have passed it on";
+}
+
+TEST_F(ARosterByHubs, FirstTakesWhatHasComeWhileItSlept) {
+  hub_comes(101);
+  pass(std::chrono::seconds(5), {1, 2});
+  now_ += std::chrono::minutes(1);
+  pass(std::chrono::milliseconds(500), {});
+  EXPECT_FALSE(is_lost(2)) << "DDS has not taken it yet";
+  pass(std::chrono::seconds(3), {1});
+  EXPECT_FALSE(is_lost(1));
+  EXPECT_TRUE(is_lost(2));
+}
+
+TEST_F(ARosterByHubs, BelievesThatAProcessHasDiedOnlyOnceAHubWouldKnowBetter) {
+  hub_comes(101);
+  pass(std::chrono::seconds(5), {1, 2});
+  roster_.receive_death(1);
+  roster_.receive_death(2);
+  pass(std::chrono::seconds(2), {1});
+  EXPECT_FALSE(is_lost(1)) << "a hub still passes on what it says";
+  EXPECT_TRUE(is_lost(2));
+}
+
+TEST_F(ARosterByHubs, BelievesNoDeathWhileNoHubIsThere) {
+  hub_comes(101);
+  pass(std::chrono::seconds(5), {1});
+  hubs_.clear();
+  roster_.receive_death(1);
+  pass(std::chrono::minutes(1), {});
+  EXPECT_FALSE(is_lost(1));
 }
 
 TEST_F(ARoster, LooksAtAllAfterADeath) {
