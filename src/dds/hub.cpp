@@ -62,8 +62,9 @@ class Socket {
 };
 
 std::string why_no_second(const Settings& settings) {
-  return fmt::format("DDS domain {} already has a hub{} at {}, or another program has its UDP port {}", settings.domain,
-                     settings.keys ? " with keys" : "", hub_address(settings), hub_port(settings));
+  return fmt::format(
+      "DDS domain {} already has a hub{} at {}, or another program has its UDP port {}, or this host has another address",
+      settings.domain, settings.keys ? " with keys" : "", hub_address(settings), hub_port(settings));
 }
 
 /// A name on this host that one process has at a time. Fast DDS shares its ports, so two hubs that start in the same

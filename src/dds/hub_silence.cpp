@@ -7,7 +7,7 @@
 namespace aurasim::dds {
 
 void HubSilence::look(const std::vector<RemoteWriter>& writers, const Speakers& speakers, Time now) {
-  if (!last_look_ || now - *last_look_ > kAwake) awake_since_ = now;
+  if (!last_look_ || now - *last_look_ > kSleep) awake_since_ = now;
   last_look_ = now;
   hub_since_.reset();
   for (const RemoteWriter& writer : writers) {

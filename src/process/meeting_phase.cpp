@@ -32,8 +32,10 @@ bool MeetingPhase::finds_hub() {
   while (!run_.endpoints.participant().has_way_to_all()) {
     if (host::stop_requested()) return false;
     if (patience.is_over(Clock::now())) {
-      run_.refuse(fmt::format("no hub of DDS domain {} in {} s: `launch` starts one, and so does `aurasim hub`",
-                              run_.launch.dds.domain, whole_seconds(Clock::now() - began)));
+      const config::Dds& dds = run_.launch.dds;
+      run_.refuse(fmt::format("no hub of DDS domain {}{} in {} s: `launch` starts one, and so does `aurasim hub`",
+                              dds.domain, dds.hub.empty() ? "" : " at " + dds.hub,
+                              whole_seconds(Clock::now() - began)));
       return false;
     }
     run_.control().wait(20ms);

@@ -64,9 +64,10 @@ up() {
 
 # SITE HOST NAME COMMAND [OPTION...]: starts the program there, its output in NAME.log
 on_host() {
-  local site=$1 host=$2 name=$3 command=$4
+  local site=$1 host=$2 name=$3 command
+  read -ra command <<<"$4"
   shift 4
-  ip netns exec "$(ns "$site" "$host")" "$aurasim" "$command" "$launch" "${same[@]}" "${cut[@]}" --set dds.domain=189 \
+  ip netns exec "$(ns "$site" "$host")" "$aurasim" "${command[@]}" "$launch" "${same[@]}" "${cut[@]}" --set dds.domain=189 \
     --set "dds.profiles=$profiles" --set dds.discovery=neighbours --set "dds.interfaces=[$(address "$site" "$host")]" \
     --set "dds.hub=$(hub_address "$site")" "$@" >"$reports/$name.log" 2>&1 &
 }
@@ -104,7 +105,7 @@ start() {
 wait_for_states() {
   local region deadline=$((SECONDS + 120))
   for ((region = 0; region < regions; ++region)); do
-    until [[ $(cat "$reports/$1/region_$region/steps.csv" 2>/dev/null | wc -l) -gt $2 ]]; do
+    until [[ $({ wc -l <"$reports/$1/region_$region/steps.csv"; } 2>/dev/null) -gt $2 ]]; do
       [[ $SECONDS -lt $deadline ]] || fail "$1: the run does not get to state $2"
       sleep 0.05
     done
@@ -113,7 +114,15 @@ wait_for_states() {
 
 # REPORT [REGION]: waits until all have ended; that of REGION has been killed
 finish() {
-  local report=$1 killed=${2:-none} region code site deadline=$((SECONDS + 180))
+  local report=$1 site
+  end "$@"
+  for site in "${!hubs[@]}"; do kill_hub "$site"; done
+  "$aurasim" report "$launch" "$reports/$report" "${same[@]}" "${cut[@]}" || fail "$report: a body is lost or doubled"
+  "$aurasim" compare "$reports/central" "$reports/$report" || fail "$report: other bits"
+}
+
+end() {
+  local report=$1 killed=${2:-none} region code deadline=$((SECONDS + 180))
   for region in "${!pids[@]}"; do
     while kill -0 "${pids[$region]}" 2>/dev/null; do
       [[ $SECONDS -lt $deadline ]] || fail "$report: process $region does not end"
@@ -124,9 +133,6 @@ finish() {
     [[ $code -eq 0 || $region == "$killed" ]] || fail "$report: process $region ended with exit code $code"
   done
   pids=()
-  for site in "${!hubs[@]}"; do kill_hub "$site"; done
-  "$aurasim" report "$launch" "$reports/$report" "${same[@]}" "${cut[@]}" || fail "$report: a body is lost or doubled"
-  "$aurasim" compare "$reports/central" "$reports/$report" || fail "$report: other bits"
 }
 
 start_spare() {
@@ -150,7 +156,7 @@ nobody_died() {
 
 hub_is_killed() {
   echo "-- a hub is killed"
-  start hub_killed "$@"
+  start hub_killed
   wait_for_states hub_killed 60
   kill_hub 1
   finish hub_killed
@@ -164,7 +170,7 @@ hub_and_node_are_killed() {
   start_spare 2 "${more[@]}" --report "$reports/node_killed" --steps "$steps"
   wait_for_states node_killed 60
   kill_hub 1
-  sleep 3 # longer than it takes to notice a silence with leases of 1 s
+  sleep 6 # longer than it takes to notice a silence
   nobody_died node_killed
   kill -KILL "${pids[$died]}"
   finish node_killed "$died"
@@ -178,7 +184,7 @@ all_hubs_are_killed() {
   start_spare 2 "${more[@]}" --report "$reports/hubs_back" --steps "$steps"
   wait_for_states hubs_back 60
   for ((site = 0; site < sites; ++site)); do kill_hub $site; done
-  sleep 3
+  sleep 6
   nobody_died hubs_back
   kill -KILL "${pids[$died]}"
   sleep 1
@@ -196,7 +202,7 @@ hubs_are_cut_off() {
   start hubs_cut
   wait_for_states hubs_cut 60
   for ((site = 0; site < sites; ++site)); do link $site 100 down; done
-  sleep 3
+  sleep 5
   for ((site = 0; site < sites; ++site)); do link $site 100 up; done
   finish hubs_cut
   nobody_died hubs_cut
@@ -207,12 +213,32 @@ site_is_cut_off() {
   start site_cut --set survival.checkpoint=0.5
   wait_for_states site_cut 60
   ip -n "$lab-router" link set site1 down
-  sleep 4
+  sleep 8
   ip -n "$lab-router" link set site1 up
   finish site_cut
 }
 
-short_leases=$PWD/qos/aurasim.xml profiles=$PWD/qos/hosts.xml # 1 s and 10 s
+is_steered() {
+  local steps=100000 site
+  echo "-- a run is watched from one site, and stopped from another one"
+  start steered
+  wait_for_states steered 60
+  on_host 2 1 top top --duration 3
+  wait $! || fail "steered: top"
+  [[ $(grep -c running "$reports/top.log") -ge $regions ]] || fail "steered: top does not see all"
+  on_host 1 1 stop "send stop"
+  wait $! || fail "steered: send stop"
+  end steered
+  for site in "${!hubs[@]}"; do kill_hub "$site"; done
+  "$aurasim" report "$launch" "$reports/steered" "${same[@]}" "${cut[@]}" || fail "steered: a body is lost or doubled"
+}
+
+# Leases of 10 s, and of 3 s; a hub's silence about a node is believed after 15.5 s and 5 s.
+profiles=$PWD/qos/hosts.xml
+sed -e 's|<lease_duration><sec>10<|<lease_duration><sec>3<|; s|<leaseDuration><sec>10<|<leaseDuration><sec>3<|' \
+  -e 's|<announcement_period><sec>2<|<announcement_period><sec>0<|' "$profiles" >"$reports/hosts.xml"
+ln -s "$PWD/qos/aurasim.xml" "$reports/aurasim.xml"
+short_leases=$reports/hosts.xml
 case $mode in
   short)
     hub_is_killed
@@ -224,9 +250,13 @@ case $mode in
     profiles=$short_leases
     hub_and_node_are_killed
     all_hubs_are_killed
+    is_steered
     hubs_are_cut_off
     site_is_cut_off
     ;;
-  *) "$mode" ;;
+  *) # one of them
+    profiles=$short_leases
+    "$mode"
+    ;;
 esac
 echo "passed"
