@@ -63,7 +63,8 @@ class Socket {
 
 std::string why_no_second(const Settings& settings) {
   return fmt::format(
-      "DDS domain {} already has a hub{} at {}, or another program has its UDP port {}, or this host has another address",
+      "DDS domain {} already has a hub{} at {}, or another program has its UDP port {}, or this host has another "
+      "address",
       settings.domain, settings.keys ? " with keys" : "", hub_address(settings), hub_port(settings));
 }
 
