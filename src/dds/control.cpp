@@ -126,6 +126,7 @@ ControlBus::Impl::Impl(Participant& participant_in, const ControlSettings& setti
 void ControlBus::Impl::take_statuses() {
   Origin origin;
   while (status_reader.take(&status, &origin)) {
+    origin.heed(status.sent_ns());
     auto decoded = messages::decode(status, {});
     if (const auto* error = std::get_if<messages::WireError>(&decoded)) {
       refused.add(*error);
@@ -224,6 +225,7 @@ bool ControlBus::publish_status(const messages::Status& status) {
   }
   impl_->participant.progress();
   messages::encode(status, impl_->status);
+  impl_->status.sent_ns(wall_ns());
   impl_->status_writer->forget_all();
   return impl_->status_writer->write(&impl_->status) != WriteResult::kFailed;
 }
@@ -291,6 +293,7 @@ std::uint64_t ControlBus::send(messages::RunCommand command) {
   }
   impl_->remember(command.request, impl_->command_writer->guid());
   messages::encode(command, impl_->sender, impl_->command);
+  impl_->command.sent_ns(wall_ns());
   if (impl_->command_writer->write(&impl_->command) == WriteResult::kFailed) {
     throw DdsError(fmt::format("cannot send the command {}: run_control does not take it", name_of(command.kind)));
   }
@@ -332,6 +335,7 @@ std::vector<messages::RunCommand> ControlBus::take_commands() {
   Origin origin;
   while (impl_->command_reader->take(&impl_->command, &origin)) {
     if (impl_->is_too_much(origin)) continue;
+    origin.heed(impl_->command.sent_ns());
     auto decoded = messages::decode(impl_->command, expected);
     if (const auto* error = std::get_if<messages::WireError>(&decoded)) {
       impl_->refused.add(*error);

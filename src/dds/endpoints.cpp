@@ -17,7 +17,6 @@ namespace aurasim::dds {
 
 using eprosima::fastdds::dds::DataReaderQos;
 using eprosima::fastdds::dds::DataWriterQos;
-using eprosima::fastdds::dds::HANDLE_NIL;
 using eprosima::fastdds::dds::PublisherQos;
 using eprosima::fastdds::dds::SampleInfo;
 using eprosima::fastdds::dds::StatusMask;
@@ -200,9 +199,12 @@ WriteResult Writer::write_parts(void* message, std::uint32_t message_B) {
   return result;
 }
 
-/// Writes with `write`, which returns true if it could, a second time if need be.
-template <class Write>
-WriteResult Writer::write_in_two_tries(Write&& write) {
+/// Writes a sample, a second time if need be.
+WriteResult Writer::write_in_two_tries(void* sample, eprosima::fastrtps::rtps::WriteParams& params) {
+  const auto write = [&] {
+    params.source_timestamp().from_ns(sent_.next(wall_ns()));
+    return writer_->write(sample, params);
+  };
   WriteResult result = WriteResult::kSent;
   if (!write()) {
     result = WriteResult::kSentAtSecondTry;
@@ -213,7 +215,8 @@ WriteResult Writer::write_in_two_tries(Write&& write) {
 }
 
 WriteResult Writer::write_sample(void* sample) {
-  return write_in_two_tries([&] { return writer_->write(sample, HANDLE_NIL) == ReturnCode_t::RETCODE_OK; });
+  eprosima::fastrtps::rtps::WriteParams params;
+  return write_in_two_tries(sample, params);
 }
 
 WriteResult Writer::pass_on(const PassedSample& passed) {
@@ -221,8 +224,7 @@ WriteResult Writer::pass_on(const PassedSample& passed) {
   params.related_sample_identity().writer_guid(passed.writer);
   params.related_sample_identity().sequence_number(
       eprosima::fastrtps::rtps::SequenceNumber_t(static_cast<std::uint64_t>(passed.number)));
-  params.source_timestamp().from_ns(passed.sent_ns);
-  return write_in_two_tries([&] { return writer_->write(passed.sample.get(), params); });
+  return write_in_two_tries(passed.sample.get(), params);
 }
 
 void Writer::forget_all() {
@@ -366,7 +368,8 @@ bool Reader::take_own(void* sample, Origin* origin) {
     if (origin != nullptr) {
       origin->writer = writer;
       origin->by_hub = by_hub;
-      origin->clock_ahead = std::chrono::nanoseconds(info.source_timestamp.to_ns() - info.reception_timestamp.to_ns());
+      origin->received_ns = info.reception_timestamp.to_ns();
+      origin->clock_ahead = std::chrono::nanoseconds(info.source_timestamp.to_ns() - origin->received_ns);
     }
     const auto part = part_fields_ == nullptr ? std::nullopt : part_fields_->get(sample);
     if (!part || put_together(sample, *part, writer)) return true;
@@ -380,7 +383,6 @@ bool Reader::take_sample(PassedSample& taken) {
     if (!info.valid_data) continue;
     taken.writer = eprosima::fastrtps::rtps::iHandle2GUID(info.publication_handle);
     taken.number = static_cast<std::int64_t>(info.sample_identity.sequence_number().to64long());
-    taken.sent_ns = info.source_timestamp.to_ns();
     std::copy_n(&info.instance_handle.value[0], taken.key.size(), taken.key.begin());
     return true;
   }

@@ -16,6 +16,7 @@
 #include "core/ids.h"
 #include "dds/domain.h"
 #include "dds/kept_samples.h"
+#include "dds/rising_time.h"
 #include "dds/seen_numbers.h"
 #include "dds/watch.h"
 #include "messages/part_fields.h"
@@ -57,7 +58,7 @@ class Writer {
   /// Writes one message. `sample` points to the generated type of the topic. A message that does not fit into a
   /// datagram is written in parts (parts.h).
   WriteResult write(void* sample);
-  /// Writes a sample of another writer, with its number and time. For a hub.
+  /// Writes a sample of another writer, with its number. For a hub.
   WriteResult pass_on(const PassedSample& passed);
   /// Drops all samples from the history, also those that some readers have not acknowledged. Call it before write()
   /// where the newest message of a writer replaces all earlier ones.
@@ -80,8 +81,7 @@ class Writer {
 
  private:
   void say_who_does_not_read();
-  template <class Write>
-  WriteResult write_in_two_tries(Write&& write);
+  WriteResult write_in_two_tries(void* sample, eprosima::fastrtps::rtps::WriteParams& params);
   WriteResult write_sample(void* sample);
   WriteResult write_parts(void* message, std::uint32_t message_B);
   std::uint32_t largest_sample_B() const;
@@ -94,6 +94,7 @@ class Writer {
   WriterWatch watch_;
   bool is_of_nodes_ = false;                        ///< its samples are messages between nodes
   LivelinessAsserter::Nanoseconds written_ns_ = 0;  ///< when the last sample was written
+  RisingTime sent_;
   std::int32_t unread_ = 0;  ///< calls of forget_acknowledged() since every reader had acknowledged everything
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
   eprosima::fastdds::dds::DataWriter* writer_ = nullptr;
@@ -102,10 +103,16 @@ class Writer {
 /// Origin of a received sample.
 struct Origin {
   Guid writer;
-  bool by_hub = false;  ///< it came by a hub: this process need not know the writer's process
-  /// How far the writer's wall clock is ahead of the own one, less the transit time: its time of sending minus our time
-  /// of receipt.
+  bool by_hub = false;           ///< it came by a hub: this process need not know the writer's process
+  std::int64_t received_ns = 0;  ///< when: wall clock, nanoseconds since 1970
+  /// How far the sender's wall clock is ahead of the own one, less the transit time: its time of sending minus our time
+  /// of receipt. Of a message that came by a hub: the hub's clock, unless the message says when it was sent.
   std::chrono::nanoseconds clock_ahead{0};
+
+  /// Sets clock_ahead by what a message says. `sent_ns`: wall clock of its sender; 0 or less: it says nothing.
+  void heed(std::int64_t sent_ns) {
+    if (sent_ns > 0) clock_ahead = std::chrono::nanoseconds(sent_ns - received_ns);
+  }
 };
 
 /// A DDS reader. QoS by profile `<topic>_reader`, or as the spec says.

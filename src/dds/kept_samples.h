@@ -18,7 +18,6 @@ struct PassedSample {
   std::shared_ptr<void> sample;  ///< of the topic's generated type
   Guid writer;                   ///< who has published it
   std::int64_t number = 0;       ///< its number among the samples of that writer
-  std::int64_t sent_ns = 0;      ///< when: wall clock, nanoseconds since 1970
   std::array<std::uint8_t, 16> key{};
 };
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "child.h"
+#include "messages/control_codec.h"
 #include "messages/control_samples.h"
 #include "transport_fixture.h"
 
@@ -169,6 +170,22 @@ TEST(Commands, SayWhetherTheSendersClockIsOurs) {
   ASSERT_TRUE(node.wait_until([&] { return !(commands = node.bus.take_commands()).empty(); }));
   EXPECT_LE(commands[0].clock_ahead, 0ns) << "both are of this host, and the way takes its time";
   EXPECT_GT(commands[0].clock_ahead, -testing::kDeadline);
+}
+
+/// A hub that passes the status on has a clock of its own.
+TEST(Status, SaysItselfHowFarTheSendersClockIsAhead) {
+  Participant sender(settings_for(own_domain()));
+  Writer writer(sender.domain(), on(TopicId::kNodeStatus, {.source = RegionId{0}}, RegionId{0}),
+                sender.domain().wakeup());
+  wire::NodeStatus status;
+  messages::encode(status_of(0), status);
+  status.sent_ns(wall_ns() + std::chrono::nanoseconds(1h).count());
+  ASSERT_NE(writer.write(&status), WriteResult::kFailed);
+  Member watcher(own_domain());
+  ASSERT_TRUE(watcher.wait_until([&] { return watcher.bus.statuses().contains(RegionId{0}); }));
+  const std::chrono::nanoseconds ahead = watcher.bus.statuses().at(RegionId{0}).clock_ahead;
+  EXPECT_LE(ahead, 1h);
+  EXPECT_GT(ahead, 1h - testing::kDeadline);
 }
 
 TEST(Status, OfAnotherRegionCannotBePublished) {

@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "datagram_samples.h"
+#include "dds/endpoints.h"
 #include "dds/kept_samples.h"
+#include "dds/rising_time.h"
 #include "dds/seen_numbers.h"
 #include "rtps/readdressed.h"
 
@@ -230,6 +232,36 @@ TEST(SeenNumbers, OfEachWriterCountOnce) {
   EXPECT_FALSE(seen.is_news(writer(1), 5)) << "another hub has passed it on, too";
   EXPECT_FALSE(seen.is_news(writer(1), 3));
   EXPECT_TRUE(seen.is_news(writer(1), 6));
+}
+
+TEST(RisingTime, IsTheWallClockWhileThatGoesForward) {
+  RisingTime sent;
+  EXPECT_EQ(sent.next(5'000'000), 5'000'000);
+  EXPECT_EQ(sent.next(7'000'000), 7'000'000);
+}
+
+TEST(RisingTime, RisesWhereTheWallClockStandsOrIsSetBack) {
+  RisingTime sent;
+  std::int64_t last = sent.next(3'600'000'000'000);
+  for (const std::int64_t wall_ns : {3'600'000'000'000, 3'599'999'999'999, 0L, -1L, 1'000'000L}) {
+    const std::int64_t next = sent.next(wall_ns);
+    EXPECT_GT(next, last);
+    EXPECT_LT(next, last + 1'000'000) << "it has to meet the clock again";
+    last = next;
+  }
+  EXPECT_EQ(sent.next(3'700'000'000'000), 3'700'000'000'000);
+}
+
+TEST(Origin, KnowsTheClockOfTheSenderByWhatItSays) {
+  Origin origin;
+  origin.received_ns = 10'000;
+  origin.clock_ahead = 7ns;  // of the hub
+  for (const std::int64_t said_ns : {std::int64_t{0}, std::int64_t{-1}, INT64_MIN}) {
+    origin.heed(said_ns);
+    EXPECT_EQ(origin.clock_ahead, 7ns) << "it says nothing";
+  }
+  origin.heed(10'250);
+  EXPECT_EQ(origin.clock_ahead, 250ns);
 }
 
 }  // namespace

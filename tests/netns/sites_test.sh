@@ -3,11 +3,11 @@
 # sites, and no multicast passes it. Against one node in one process: no body lost or doubled, and the same bits, also
 # when a hub is killed, and when a node is. Nothing of it is on the machine's own network. Exit code 77 where there can be
 # no such laboratory. Domains 188, 189.
-#   tests/netns/sites_test.sh short|long [NODES [STEPS]]     nodes on each site, 2 by default
+#   tests/netns/sites_test.sh short|long [NODES [STEPS]]     nodes on each site, 4 by default
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
-mode=${1:?short or long} nodes=${2:-2} steps=${3:-600}
+mode=${1:?short or long} nodes=${2:-4} steps=${3:-600}
 sites=3
 aurasim=${AURASIM:-$PWD/build/release/aurasim}
 lab=aurasites$$
@@ -116,6 +116,8 @@ wait_for_states() {
 finish() {
   local report=$1 site
   end "$@"
+  ! grep -h 'Assertion' "$reports"/*.log || fail "$report: a process ended by an assertion"
+  for site in "${!hubs[@]}"; do kill -0 "${hubs[$site]}" || fail "$report: hub $site has ended"; done
   for site in "${!hubs[@]}"; do kill_hub "$site"; done
   "$aurasim" report "$launch" "$reports/$report" "${same[@]}" "${cut[@]}" || fail "$report: a body is lost or doubled"
   "$aurasim" compare "$reports/central" "$reports/$report" || fail "$report: other bits"
