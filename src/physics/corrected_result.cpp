@@ -30,6 +30,7 @@ std::optional<PointOnB> CorrectedResult::corrected(const btCollisionObjectWrappe
     has_left_out_ = true;
     return {};
   }
+  if (*contact == on_static) return found;  // to the bit, as where no other piece is beside the static
   return is_on_static ? PointOnB{contact->normal, contact->on_static(), contact->gap_m}
                       : PointOnB{-contact->normal, contact->on_body, contact->gap_m};
 }

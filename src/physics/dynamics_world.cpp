@@ -168,7 +168,6 @@ void DynamicsWorld::couple(const Coupling& coupling) { bullet_->world->couple(co
 
 void DynamicsWorld::step(double substep_s) {
   const btScalar dt = static_cast<btScalar>(substep_s);
-  bullet_->inner_edges.settle();
   bullet_->world->stepSimulation(dt, /*maxSubSteps=*/0, dt);
   if (bullet_->contact_impulses.wanted() && !bullet_->sums_itself) bullet_->contact_impulses.look(manifolds());
 }

@@ -16,8 +16,8 @@ namespace aurasim::physics {
 struct FlatFace {
   btVector3 normal;
   btScalar offset_m;
-  bool is_surface;             ///< false: the border of a triangle, which nothing lies on
-  bool may_be_covered = true;  ///< false: no other piece can lie in front of it
+  bool is_surface;              ///< false: the border of a triangle, which nothing lies on
+  bool may_be_covered = false;  ///< another piece may lie in front of it
 
   btScalar above(const btVector3& p) const { return normal.dot(p) - offset_m; }
 };

@@ -1,13 +1,14 @@
 #include "physics/inner_edges.h"
 
 #include <algorithm>
+#include <array>
+#include <span>
 
 #include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleShape.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
-#include "physics/bullet_convert.h"
 #include "physics/moving_static.h"
 
 namespace aurasim::physics {
@@ -27,8 +28,9 @@ constexpr btScalar kPart = btScalar(1e-3);
 /// Faces whose normals have a larger product face the same way, so that `kStep_m` holds between them.
 constexpr btScalar kFacing = btScalar(0.7);
 constexpr int kProjections = 20;
-/// After more changes at once, all statics are looked at again instead of those near the changes.
-constexpr std::size_t kManyChanges = 32;
+/// Of contacts that are deeper than this nothing is asked about other pieces, because these may be out of reach.
+constexpr btScalar kDeepest_m = btScalar(1.5);
+static_assert(kDeepest_m + 0.1 < InnerEdges::kReach_m);
 
 bool takes_part(const btCollisionObject& fixed, const btTransform& start) {
   if (!is_moving_static(fixed)) return true;
@@ -45,15 +47,20 @@ bool takes_part(const btCollisionObject& fixed, const btTransform& start) {
 
 std::size_t number_of(const btCollisionObject& fixed) { return static_cast<std::size_t>(-1 - fixed.getUserIndex()); }
 
-core::BoxTree::Box box_around(const btVector3& low, const btVector3& high, btScalar more_m) {
-  const core::Vec3 more = core::Vec3::Constant(static_cast<double>(more_m));
-  return {from_bullet(low) - more, from_bullet(high) + more};
+btDbvtVolume volume_around(const btVector3& low, const btVector3& high, btScalar more_m) {
+  const btVector3 more(more_m, more_m, more_m);
+  return btDbvtVolume::FromMM(low - more, high + more);
 }
 
-core::BoxTree::Box box_around(const btCollisionObject& object, const btTransform& pose, btScalar more_m) {
-  btVector3 low, high;
-  object.getCollisionShape()->getAabb(pose, low, high);
-  return box_around(low, high, more_m);
+/// Calls `found(leaf)` for the leaves that meet a volume, in the order of the tree.
+template <class Found>
+void for_each_leaf(const btDbvt& tree, const btDbvtVolume& where, Found&& found) {
+  struct Policy : btDbvt::ICollide {
+    explicit Policy(Found& to) : call(to) {}
+    void Process(const btDbvtNode* leaf) { call(*leaf); }
+    Found& call;
+  } policy(found);
+  tree.collideTV(tree.m_root, where, policy);
 }
 
 /// A triangle near a contact.
@@ -104,7 +111,32 @@ bool is_at_joint(const FlatPiece& piece, const btVector3& p, const btVector3& up
   });
 }
 
+/// True if the half-space of a plane comes to a volume.
+bool meets(const FlatPiece& plane, const btDbvtVolume& volume) {
+  const FlatFace& face = plane.faces[0];
+  return face.above(volume.Center()) < face.normal.absolute().dot(volume.Extents()) + kJoint_m;
+}
+
 }  // namespace
+
+/// A piece in the tree, or a mesh.
+struct InnerEdges::Piece {
+  Fixed* fixed = nullptr;
+  FlatPiece flat;               ///< no faces: a mesh
+  std::vector<FlatFace> faces;  ///< of `flat`
+  btDbvtNode* leaf = nullptr;
+
+  void note_beside(const btDbvtVolume& other);
+  void note_plane();
+};
+
+struct InnerEdges::Fixed {
+  const btCollisionObject* object = nullptr;
+  btTransform start = btTransform::getIdentity();
+  bool is_mesh = false;
+  bool has_neighbours = false;
+  std::vector<Piece> pieces;  ///< its own, or those of its children
+};
 
 struct InnerEdges::Near {
   static constexpr std::size_t kMost = 24;
@@ -116,8 +148,12 @@ struct InnerEdges::Near {
   void add(const FlatPiece& piece) {
     if (count < kMost) pieces[count++] = &piece;
   }
+  void add_triangles(const Fixed& mesh, const btVector3& p, btScalar around_m);
   std::span<const FlatPiece* const> all() const { return std::span(pieces).first(count); }
 };
+
+InnerEdges::InnerEdges() = default;
+InnerEdges::~InnerEdges() = default;
 
 const InnerEdges::Fixed* InnerEdges::find(const btCollisionObject& fixed) const {
   const std::size_t number = number_of(fixed);
@@ -125,115 +161,85 @@ const InnerEdges::Fixed* InnerEdges::find(const btCollisionObject& fixed) const 
 }
 
 void InnerEdges::insert(const btCollisionObject& fixed, const btTransform& start) {
-  auto owned = std::make_unique<Fixed>();
-  Fixed& made = *owned;
-  made.object = &fixed, made.start = start;
-  const auto add = [&](const btCollisionShape& shape, const btTransform& pose, int index) {
-    made.faces.push_back(faces_of(shape, pose));
-    made.pieces.push_back({&fixed, index, shape.isConvex() ? shape.getMargin() : btScalar(0), false, {}});
-  };
-  const btCollisionShape& shape = *fixed.getCollisionShape();
-  if (shape.isCompound()) {
-    const auto& compound = static_cast<const btCompoundShape&>(shape);
-    for (int i = 0; i < compound.getNumChildShapes(); ++i) {
-      add(*compound.getChildShape(i), start * compound.getChildTransform(i), i);
-    }
-  } else if (shape.getShapeType() == TRIANGLE_MESH_SHAPE_PROXYTYPE) {
-    made.is_mesh = true;
-  } else {
-    add(shape, start, -1);
-  }
-  for (std::size_t i = 0; i < made.pieces.size(); ++i) made.pieces[i].faces = made.faces[i];
   const std::size_t number = number_of(fixed);
   if (fixed_.size() <= number) fixed_.resize(number + 1);
-  fixed_[number] = std::move(owned);
-  changed_.push_back(box_around(fixed, start, 4 * kJoint_m));
+  fixed_[number] = std::make_unique<Fixed>();
+  Fixed& made = *fixed_[number];
+  made.object = &fixed, made.start = start;
+  const btCollisionShape& shape = *fixed.getCollisionShape();
+  made.is_mesh = made.has_neighbours = shape.getShapeType() == TRIANGLE_MESH_SHAPE_PROXYTYPE;
+  if (shape.getShapeType() == STATIC_PLANE_PROXYTYPE) return add_plane(made);
+  if (!shape.isCompound()) {
+    made.pieces.reserve(1);
+    return add_piece(made, shape, start, -1);
+  }
+  const auto& compound = static_cast<const btCompoundShape&>(shape);
+  made.pieces.reserve(static_cast<std::size_t>(compound.getNumChildShapes()));
+  for (int i = 0; i < compound.getNumChildShapes(); ++i) {
+    add_piece(made, *compound.getChildShape(i), start * compound.getChildTransform(i), i);
+  }
+}
+
+void InnerEdges::add_plane(Fixed& plane) {
+  const btCollisionShape& shape = *plane.object->getCollisionShape();
+  Piece& piece = plane.pieces.emplace_back();
+  piece.fixed = &plane;
+  piece.faces = faces_of(shape, plane.start);
+  piece.flat = {plane.object, -1, shape.getMargin(), false, piece.faces};
+  const auto place = std::ranges::lower_bound(planes_, number_of(*plane.object), {},
+                                              [](const Fixed* other) { return number_of(*other->object); });
+  planes_.insert(place, &plane);
+  for (const std::unique_ptr<Fixed>& other : fixed_) {
+    if (other == nullptr) continue;
+    for (Piece& beside : other->pieces) {
+      if (beside.leaf != nullptr && meets(piece.flat, beside.leaf->volume)) beside.note_plane();
+    }
+  }
+}
+
+/// Adds a piece of a static, and notes which pieces are beside each other. Pieces that leave are not noted, because a
+/// static that seems to have neighbours only costs time.
+void InnerEdges::add_piece(Fixed& fixed, const btCollisionShape& shape, const btTransform& pose, int index) {
+  Piece& piece = fixed.pieces.emplace_back();
+  piece.fixed = &fixed;
+  piece.faces = faces_of(shape, pose);
+  piece.flat = {fixed.object, index, shape.isConvex() ? shape.getMargin() : btScalar(0), false, piece.faces};
+  if (piece.faces.empty() && !fixed.is_mesh) return;
+  btVector3 low, high;
+  shape.getAabb(pose, low, high);
+  const btDbvtVolume own = volume_around(low, high, 0);
+  for_each_leaf(tree_, volume_around(low, high, 2 * kJoint_m), [&](const btDbvtNode& leaf) {
+    piece.note_beside(leaf.volume);
+    static_cast<Piece*>(leaf.data)->note_beside(own);
+  });
+  const bool is_on_plane =
+      std::ranges::any_of(planes_, [&](const Fixed* plane) { return meets(plane->pieces[0].flat, own); });
+  if (is_on_plane) piece.note_plane();
+  piece.leaf = tree_.insert(own, &piece);
+}
+
+/// Notes that another piece has these bounds, which come near.
+void InnerEdges::Piece::note_beside(const btDbvtVolume& other) {
+  fixed->has_neighbours = true;
+  const btVector3 centre = other.Center(), half = other.Extents();
+  for (FlatFace& face : faces) {
+    const btScalar reach = face.normal.absolute().dot(half);
+    if (face.above(centre) + reach > kJoint_m - 2 * kStep_m) face.may_be_covered = true;
+  }
+}
+
+void InnerEdges::Piece::note_plane() {
+  fixed->has_neighbours = true;
+  for (FlatFace& face : faces) face.may_be_covered = true;
 }
 
 void InnerEdges::remove(const btCollisionObject& fixed) {
   std::unique_ptr<Fixed>& leaving = fixed_[number_of(fixed)];
-  changed_.push_back(box_around(fixed, leaving->start, 4 * kJoint_m));
+  std::erase(planes_, leaving.get());
+  for (const Piece& piece : leaving->pieces) {
+    if (piece.leaf != nullptr) tree_.remove(piece.leaf);
+  }
   leaving.reset();
-}
-
-void InnerEdges::settle() {
-  if (changed_.empty()) return;
-  std::vector<core::BoxTree::Box> boxes;
-  entries_.clear(), planes_.clear();
-  const auto add = [&](Fixed& fixed, FlatPiece* piece, const btCollisionShape& shape, const btTransform& pose) {
-    btVector3 low, high;
-    shape.getAabb(pose, low, high);
-    boxes.push_back(box_around(low, high, 0));
-    entries_.push_back({&fixed, piece});
-  };
-  for (const std::unique_ptr<Fixed>& one : fixed_) {
-    if (one == nullptr) continue;
-    Fixed& fixed = *one;
-    const btCollisionShape& shape = *fixed.object->getCollisionShape();
-    if (fixed.is_mesh) add(fixed, nullptr, shape, fixed.start);
-    for (FlatPiece& piece : fixed.pieces) {
-      if (piece.faces.empty()) continue;
-      if (shape.getShapeType() == STATIC_PLANE_PROXYTYPE) {
-        planes_.push_back(&piece);
-      } else if (shape.isCompound()) {
-        const auto& compound = static_cast<const btCompoundShape&>(shape);
-        add(fixed, &piece, *compound.getChildShape(piece.index), fixed.start * compound.getChildTransform(piece.index));
-      } else {
-        add(fixed, &piece, shape, fixed.start);
-      }
-    }
-  }
-  tree_.emplace(std::move(boxes));
-  const auto has_changed = [&](const core::BoxTree::Box& box) {
-    return changed_.size() > kManyChanges ||
-           std::ranges::any_of(changed_, [&](const core::BoxTree::Box& there) { return there.meets(box); });
-  };
-  for (const std::unique_ptr<Fixed>& fixed : fixed_) {
-    if (fixed != nullptr && has_changed(box_around(*fixed->object, fixed->start, 0))) {
-      fixed->has_neighbours = has_neighbours(*fixed);
-    }
-  }
-  for (std::uint32_t i = 0; i < entries_.size(); ++i) {
-    if (has_changed((*tree_)[i])) note_covers(i);
-  }
-  changed_.clear();
-}
-
-/// Notes which faces of a piece no other piece can cover, by the pieces' bounds.
-void InnerEdges::note_covers(std::uint32_t entry) {
-  const FlatPiece* const piece = entries_[entry].piece;
-  if (piece == nullptr) return;
-  const core::BoxTree::Box own = (*tree_)[entry];
-  const btVector3 low = to_bullet(own.low), high = to_bullet(own.high);
-  const bool on_plane = meets_plane(low, high);
-  const auto index = static_cast<std::size_t>(piece - entries_[entry].fixed->pieces.data());
-  for (FlatFace& face : entries_[entry].fixed->faces[index]) {
-    face.may_be_covered = on_plane || tree_->any(box_around(low, high, 2 * kJoint_m), [&](std::uint32_t i) {
-      if (i == entry) return false;
-      const btVector3 other_low = to_bullet((*tree_)[i].low), other_high = to_bullet((*tree_)[i].high);
-      const btScalar reach = face.normal.absolute().dot((other_high - other_low) / 2);
-      return face.above((other_low + other_high) / 2) + reach > kJoint_m - 2 * kStep_m;
-    });
-  }
-}
-
-bool InnerEdges::meets_plane(const btVector3& low, const btVector3& high) const {
-  const btVector3 centre = (low + high) / 2, half = (high - low) / 2;
-  return std::ranges::any_of(planes_, [&](const FlatPiece* plane) {
-    const FlatFace& face = plane->faces[0];
-    return face.above(centre) < face.normal.absolute().dot(half) + kJoint_m;
-  });
-}
-
-bool InnerEdges::has_neighbours(const Fixed& fixed) const {
-  const btCollisionShape& shape = *fixed.object->getCollisionShape();
-  if (fixed.is_mesh) return true;
-  if (shape.getShapeType() == STATIC_PLANE_PROXYTYPE) return false;
-  btVector3 low, high;
-  shape.getAabb(fixed.start, low, high);
-  if (meets_plane(low, high)) return true;
-  int met = 0;
-  return tree_->any(box_around(low, high, kJoint_m), [&](std::uint32_t) { return ++met > 1; });
 }
 
 bool InnerEdges::concerns(const btCollisionObject& fixed) const {
@@ -241,7 +247,7 @@ bool InnerEdges::concerns(const btCollisionObject& fixed) const {
   return known != nullptr && known->has_neighbours;
 }
 
-void InnerEdges::gather(const btVector3& p, btScalar around_m, Near& near) const {
+void InnerEdges::Near::add_triangles(const Fixed& mesh, const btVector3& p, btScalar around_m) {
   struct AddTriangles : btTriangleCallback {
     AddTriangles(Near& to, const Fixed& of) : near(to), mesh(of) {}
     void processTriangle(btVector3* corners, int, int index) override {
@@ -253,24 +259,41 @@ void InnerEdges::gather(const btVector3& p, btScalar around_m, Near& near) const
     }
     Near& near;
     const Fixed& mesh;
-  };
-  for (const FlatPiece* plane : planes_) {
-    if (plane->faces[0].above(p) < around_m && takes_part(*plane->object, find(*plane->object)->start))
-      near.add(*plane);
-  }
-  tree_->any(box_around(p, p, around_m), [&](std::uint32_t i) {
-    const Entry& entry = entries_[i];
-    if (!takes_part(*entry.fixed->object, entry.fixed->start)) return false;
-    if (entry.piece != nullptr) {
-      near.add(*entry.piece);
-    } else {
-      AddTriangles add(near, *entry.fixed);
-      const btVector3 centre = entry.fixed->start.invXform(p), half(around_m, around_m, around_m);
-      static_cast<const btBvhTriangleMeshShape&>(*entry.fixed->object->getCollisionShape())
-          .processAllTriangles(&add, centre - half, centre + half);
+  } add(*this, mesh);
+  const btVector3 centre = mesh.start.invXform(p), half(around_m, around_m, around_m);
+  static_cast<const btBvhTriangleMeshShape&>(*mesh.object->getCollisionShape())
+      .processAllTriangles(&add, centre - half, centre + half);
+}
+
+/// Gathers planes first, then pieces in the order of statics, so that the tree's past does not matter.
+void InnerEdges::gather(const btVector3& p, btScalar around_m, Near& near) const {
+  for (const Fixed* plane : planes_) {
+    if (plane->pieces[0].faces[0].above(p) < around_m && takes_part(*plane->object, plane->start)) {
+      near.add(plane->pieces[0].flat);
     }
-    return false;
+  }
+  std::array<const Piece*, Near::kMost> found;
+  std::size_t count = 0;
+  const auto earlier = [](const Piece* a, const Piece* b) {
+    const std::size_t of_a = number_of(*a->fixed->object), of_b = number_of(*b->fixed->object);
+    return of_a != of_b ? of_a < of_b : a->flat.index < b->flat.index;
+  };
+  for_each_leaf(tree_, volume_around(p, p, around_m), [&](const btDbvtNode& leaf) {
+    const auto* const piece = static_cast<const Piece*>(leaf.data);
+    if (!takes_part(*piece->fixed->object, piece->fixed->start)) return;
+    auto* const place = std::upper_bound(found.begin(), found.begin() + count, piece, earlier);
+    if (place == found.end()) return;
+    if (count < found.size()) ++count;
+    std::copy_backward(place, found.begin() + count - 1, found.begin() + count);
+    *place = piece;
   });
+  for (const Piece* piece : std::span(found).first(count)) {
+    if (piece->fixed->is_mesh) {
+      near.add_triangles(*piece->fixed, p, around_m);
+    } else {
+      near.add(piece->flat);
+    }
+  }
 }
 
 /// True if other pieces leave a part of the face free around a point of it.
@@ -345,6 +368,7 @@ std::optional<StaticContact> InnerEdges::moved(const StaticContact& found, const
   const StaticContact at_lowest = contact_at(lowest_point(body, best->normal, found.on_body, found.normal));
   const btVector3 below = at_lowest.on_static();
   if (own.holds(below, kStep_m)) return at_lowest;
+  if (btFabs(at_lowest.gap_m) > kDeepest_m) return contact_at(found.on_body);
   Near there;
   gather(below, kJoint_m, there);
   const auto any = [&](const auto& of) {
@@ -379,14 +403,14 @@ std::optional<StaticContact> InnerEdges::corrected(const StaticContact& found, c
   } else {
     const auto place = static_cast<std::size_t>(std::max(0, index));
     if (place >= known->pieces.size() || known->pieces[place].faces.empty()) return found;
-    own = &known->pieces[place];
+    own = &known->pieces[place].flat;
     const bool is_on_face = std::ranges::any_of(own->faces, [&](const FlatFace& face) {
       return !face.may_be_covered && face.normal.dot(found.normal) > kAlong;
     });
     if (is_on_face) return found;
   }
   const std::optional<Feature> at = feature_of(*own, found);
-  if (!at) return found;
+  if (!at || at->p.distance2(found.on_body) > kDeepest_m * kDeepest_m) return found;
   Near near;
   gather(at->p, kAround_m + 2 * kJoint_m, near);
   const bool is_alone = std::ranges::all_of(near.all(), [&](const FlatPiece* other) { return other->is(*own); });

@@ -6,15 +6,13 @@
 // The outcome follows from the body's shape and pose and from the statics near the contact, and from nothing else.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include <BulletCollision/BroadphaseCollision/btDbvt.h>
 #include <LinearMath/btTransform.h>
 
-#include "core/box_tree.h"
 #include "physics/flat_piece.h"
 #include "physics/lowest_point.h"
 
@@ -28,18 +26,23 @@ struct StaticContact {
   btVector3 on_body;   ///< m
   btScalar gap_m = 0;  ///< negative: overlap
 
+  bool operator==(const StaticContact&) const = default;
   btVector3 on_static() const { return on_body - normal * gap_m; }
 };
 
 class InnerEdges {
  public:
+  InnerEdges();
+  ~InnerEdges();
+  InnerEdges(const InnerEdges&) = delete;
+  InnerEdges& operator=(const InnerEdges&) = delete;
+
   /// `start`: pose of the static at the start of the run. A static that moves takes part while it stands there.
   void insert(const btCollisionObject& fixed, const btTransform& start);
   void remove(const btCollisionObject& fixed);
-  /// Call after changes, before the contacts of the next state are looked for. Then several threads may ask.
-  void settle();
 
-  /// False if contacts with this static are as Bullet finds them, because no other piece is beside it.
+  /// False if corrected() returns what it is given for each contact with this static, because no other piece is beside
+  /// it. Several threads may ask this and corrected() while nothing is inserted or removed.
   bool concerns(const btCollisionObject& fixed) const;
 
   /// The contact that should be used instead of one that Bullet has found; nothing: none. `index`: of the child of a
@@ -47,27 +50,18 @@ class InnerEdges {
   std::optional<StaticContact> corrected(const StaticContact& found, const btCollisionObject& fixed, int index,
                                          const PlacedShape& of_static, const PlacedShape& of_body) const;
 
+  /// corrected() uses statics whose bounds are at most so far from the body, m. Others need not be here.
+  static constexpr btScalar kReach_m = 2;
+
  private:
-  struct Fixed {
-    const btCollisionObject* object = nullptr;
-    btTransform start = btTransform::getIdentity();
-    bool is_mesh = false;
-    bool has_neighbours = false;
-    std::vector<FlatPiece> pieces;             ///< its own, or those of its children
-    std::vector<std::vector<FlatFace>> faces;  ///< by piece
-  };
-  /// A piece in the tree, or a mesh.
-  struct Entry {
-    Fixed* fixed;
-    FlatPiece* piece;  ///< null: the mesh
-  };
+  struct Fixed;
+  struct Piece;
   /// Pieces around a point.
   struct Near;
 
   const Fixed* find(const btCollisionObject& fixed) const;
-  bool has_neighbours(const Fixed& fixed) const;
-  void note_covers(std::uint32_t entry);
-  bool meets_plane(const btVector3& low, const btVector3& high) const;
+  void add_piece(Fixed& fixed, const btCollisionShape& shape, const btTransform& pose, int index);
+  void add_plane(Fixed& plane);
   void gather(const btVector3& p, btScalar around_m, Near& near) const;
   bool is_exposed(const FlatPiece& piece, const FlatFace& face, const btVector3& p, const Near& near) const;
   bool is_inner(const StaticContact& found, const FlatPiece& own, const btVector3& p, const btVector3& along,
@@ -76,10 +70,8 @@ class InnerEdges {
                                      const PlacedShape& body, const Near& near) const;
 
   std::vector<std::unique_ptr<Fixed>> fixed_;  ///< by number of the static; null where it is not in the world
-  std::vector<Entry> entries_;
-  std::vector<const FlatPiece*> planes_;
-  std::optional<core::BoxTree> tree_;        ///< of entries_
-  std::vector<core::BoxTree::Box> changed_;  ///< where statics came or went since settle()
+  std::vector<Fixed*> planes_;                 ///< ascending by number
+  btDbvt tree_;                                ///< of the pieces of all others, at their starts
 };
 
 }  // namespace aurasim::physics

@@ -202,7 +202,6 @@ struct Boxes {
     made.setWorldTransform(btTransform(btQuaternion(btVector3(0, 0, 1), yaw_rad), p));
     made.setUserIndex(-static_cast<int>(objects.size()));
     edges.insert(made, made.getWorldTransform());
-    edges.settle();
   }
   std::optional<StaticContact> corrected(std::size_t i, const btVector3& normal, const btVector3& p) const {
     const btSphereShape ball(btScalar(0.3));
@@ -241,7 +240,6 @@ TEST(InnerEdges, AnEdgeOfATileIsRealWhereNoTileIsBesideIt) {
   EXPECT_FALSE(boxes.corrected(0, back, edge));  // the new tile has this contact
   EXPECT_FALSE(boxes.corrected(0, {-1, 0, 0}, edge));
   boxes.edges.remove(*boxes.objects[2]);
-  boxes.edges.settle();
   EXPECT_TRUE(boxes.corrected(0, back, edge));
 }
 
