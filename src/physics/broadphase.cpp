@@ -17,13 +17,14 @@ constexpr btScalar kStepsAhead = 6;
 constexpr std::size_t kLooksForAll = 10, kPairsOfObject = 8;
 /// In each look, one static in so many is given a better place in the tree, until each has been.
 constexpr std::size_t kLooksForStatics = 100;
+/// For each static that comes, so many are given a better place.
+constexpr std::size_t kPlacedForOne = 4;
 
 btDbvtVolume volume_of(const btVector3& low, const btVector3& high) { return btDbvtVolume::FromMM(low, high); }
 
 struct ForRays : btDbvt::ICollide {
-  explicit ForRays(btBroadphaseRayCallback& wanted) : callback(wanted) {}
-  void Process(const btDbvtNode* leaf) { callback.process(static_cast<btBroadphaseProxy*>(leaf->data)); }
-  btBroadphaseRayCallback& callback;
+  void Process(const btDbvtNode* leaf) { met.push_back(static_cast<btBroadphaseProxy*>(leaf->data)); }
+  std::vector<btBroadphaseProxy*> met;
 };
 
 struct ForBoxes : btDbvt::ICollide {
@@ -57,7 +58,9 @@ btBroadphaseProxy* Broadphase::createProxy(const btVector3& low, const btVector3
   proxy->m_uniqueId = next_id_++;
   proxy->stands = (group & btBroadphaseProxy::StaticFilter) != 0;
   proxy->leaf = tree_of(*proxy).insert(volume_of(low, high), proxy);
-  if (proxy->stands) statics_to_place_ = static_cast<std::size_t>(standing_.m_leaves);
+  if (proxy->stands) {
+    statics_to_place_ = std::min(statics_to_place_ + kPlacedForOne, static_cast<std::size_t>(standing_.m_leaves));
+  }
   note_moved(*proxy);
   return proxy;
 }
@@ -103,12 +106,47 @@ void Broadphase::getAabb(btBroadphaseProxy* proxy, btVector3& low, btVector3& hi
 
 void Broadphase::rayTest(const btVector3& from, const btVector3& to, btBroadphaseRayCallback& callback,
                          const btVector3& low, const btVector3& high) {
-  ForRays each(callback);
+  if (statics_ != nullptr) bring_statics_on_way(from, to, {low, high});
+  ForRays each;
   btAlignedObjectArray<const btDbvtNode*> stack;
   for (const btDbvt* tree : {&moving_, &standing_}) {
     tree->rayTestInternal(tree->m_root, from, to, callback.m_rayDirectionInverse, callback.m_signs,
                           callback.m_lambda_max, low, high, stack, each);
   }
+  // Of two hits at one place the first one counts, which must not depend on the trees.
+  std::ranges::sort(each.met, {}, [](const btBroadphaseProxy* proxy) { return proxy->m_uniqueId; });
+  for (btBroadphaseProxy* proxy : each.met) callback.process(proxy);
+}
+
+/// A long ray is cut into pieces, because the bounds of all of it may be large. `around`: of what is cast, around its
+/// origin.
+void Broadphase::bring_statics_on_way(const btVector3& from, const btVector3& to, const Bounds& around) {
+  constexpr btScalar kPiece_m = 16;
+  constexpr int kMostPieces = 1000;
+  const int count =
+      static_cast<int>(std::clamp(btScalar(1) + (to - from).length() / kPiece_m, btScalar(1), btScalar(kMostPieces)));
+  for (int i = 0; i < count; ++i) {
+    const btVector3 begin = from.lerp(to, btScalar(i) / count), end = from.lerp(to, btScalar(i + 1) / count);
+    Bounds piece{begin, begin};
+    piece.add({end, end});
+    piece.low += around.low, piece.high += around.high;
+    statics_->bring({&piece, 1});
+  }
+}
+
+bool Broadphase::has_body_near(const Bounds& where) const {
+  if (moving_.empty()) return false;
+  const btDbvtVolume box = volume_of(where.low, where.high);
+  btAlignedObjectArray<const btDbvtNode*> stack;
+  stack.push_back(moving_.m_root);
+  while (stack.size() > 0) {
+    const btDbvtNode* const node = stack[stack.size() - 1];
+    stack.pop_back();
+    if (!Intersect(node->volume, box)) continue;
+    if (node->isleaf()) return true;
+    stack.push_back(node->childs[0]), stack.push_back(node->childs[1]);
+  }
+  return false;
 }
 
 void Broadphase::aabbTest(const btVector3& low, const btVector3& high, btBroadphaseAabbCallback& callback) {
@@ -135,8 +173,10 @@ void Broadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
   if (used_room_.is_spare(moved_.size())) {
     for (List& list : lists_) list = {};
     moved_.shrink_to_fit();
+    core::free_memory(looked_in_);
   }
   if (moved_.empty()) return;
+  if (statics_ != nullptr) bring_statics();
   std::atomic<std::size_t> taken = 0;
   team_.side_by_side([&](const soft::Worker& worker) {
     List& list = lists_[static_cast<std::size_t>(worker.number)];
@@ -154,6 +194,15 @@ void Broadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
   const auto all = static_cast<std::size_t>(pairs_.getNumOverlappingPairs());
   clean(std::min(all, std::max(added, std::min(1 + all / kLooksForAll, kPairsOfObject * moved_.size()))), dispatcher);
   moved_.clear();
+}
+
+void Broadphase::bring_statics() {
+  looked_in_.clear();
+  for (const Proxy* proxy : moved_) {
+    if (proxy == nullptr || proxy->stands) continue;
+    looked_in_.push_back({proxy->leaf->volume.Mins(), proxy->leaf->volume.Maxs()});
+  }
+  if (!looked_in_.empty()) statics_->bring(looked_in_);
 }
 
 /// Finds what is near an object and has no pair with it yet.

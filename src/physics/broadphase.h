@@ -6,16 +6,26 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include <BulletCollision/BroadphaseCollision/btBroadphaseInterface.h>
 #include <BulletCollision/BroadphaseCollision/btDbvt.h>
 
 #include "core/used_room.h"
+#include "physics/bounds.h"
 #include "physics/contact_pairs.h"
 #include "physics/soft/threads.h"
 
 namespace aurasim::physics {
+
+/// Holds statics, of which not all are in the broadphase.
+class BringsStatics {
+ public:
+  virtual ~BringsStatics() = default;
+  /// Inserts the statics near `places` that are not in the broadphase.
+  virtual void bring(std::span<const Bounds> places) = 0;
+};
 
 class Broadphase final : public btBroadphaseInterface {
  public:
@@ -24,6 +34,11 @@ class Broadphase final : public btBroadphaseInterface {
   ~Broadphase() override;
   Broadphase(const Broadphase&) = delete;
   Broadphase& operator=(const Broadphase&) = delete;
+
+  /// Calls `statics` for the boxes in which pairs are looked for, and for the ways of rays. Null: all statics are here.
+  void use(BringsStatics* statics) { statics_ = statics; }
+  /// True if a body's box meets `where`.
+  bool has_body_near(const Bounds& where) const;
 
   /// The next object gets this unique id, by which the two objects of a pair are ordered.
   void number_next(int id) { next_id_ = id; }
@@ -63,6 +78,8 @@ class Broadphase final : public btBroadphaseInterface {
   static const Proxy& of(const btBroadphaseProxy& proxy);
   btDbvt& tree_of(const Proxy& proxy);
   void note_moved(Proxy& proxy);
+  void bring_statics();
+  void bring_statics_on_way(const btVector3& from, const btVector3& to, const Bounds& around);
   void look(List& list, Proxy& proxy);
   void look_in(const btDbvt& tree, List& list, Proxy& proxy);
   std::size_t add_found();
@@ -74,7 +91,9 @@ class Broadphase final : public btBroadphaseInterface {
   btDbvt moving_, standing_;
   std::vector<Proxy*> moved_;  ///< objects that have left their boxes; null: removed since
   std::vector<List> lists_;
-  core::UsedRoom used_room_;          ///< of moved_ and lists_
+  BringsStatics* statics_ = nullptr;
+  std::vector<Bounds> looked_in_;     ///< boxes in which pairs are about to be looked for
+  core::UsedRoom used_room_;          ///< of moved_, looked_in_ and lists_
   std::size_t next_to_clean_ = 0;     ///< index of a pair
   std::size_t statics_to_place_ = 0;  ///< leaves of standing_ that may have a better place in the tree
 };

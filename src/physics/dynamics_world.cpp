@@ -104,11 +104,14 @@ void DynamicsWorld::insert_static(btRigidBody& fixed, int rank, const btTransfor
   insert(fixed, rank);
 }
 
-void DynamicsWorld::remove_static(btRigidBody& fixed) {
-  bullet_->inner_edges.remove(fixed);
-  btRigidBody* const leaving = &fixed;
-  remove({&leaving, 1});
+void DynamicsWorld::remove_statics(std::span<btRigidBody* const> fixed) {
+  for (const btRigidBody* leaving : fixed) bullet_->inner_edges.remove(*leaving);
+  remove(fixed);
 }
+
+void DynamicsWorld::use(BringsStatics* statics) { bullet_->broadphase.use(statics); }
+
+bool DynamicsWorld::has_body_near(const Bounds& where) const { return bullet_->broadphase.has_body_near(where); }
 
 void DynamicsWorld::remove(std::span<btRigidBody* const> bodies) {
   std::vector<btBroadphaseProxy*> proxies;

@@ -28,6 +28,7 @@ namespace aurasim::physics {
 namespace soft {
 class Team;
 }
+class BringsStatics;
 struct Coupling;
 
 class DynamicsWorld {
@@ -40,7 +41,11 @@ class DynamicsWorld {
   void insert(btRigidBody& body, int rank, bool collides = true);
   /// Inserts a static. `start`: its pose at the start of the run.
   void insert_static(btRigidBody& fixed, int rank, const btTransform& start);
-  void remove_static(btRigidBody& fixed);
+  void remove_statics(std::span<btRigidBody* const> fixed);
+  /// Calls `statics` before contacts near a place are looked for, and before rays. Null: all statics are here.
+  void use(BringsStatics* statics);
+  /// True if the box of a body in the broadphase meets `where`.
+  bool has_body_near(const Bounds& where) const;
   /// Removes bodies with all their contacts.
   void remove(std::span<btRigidBody* const> bodies);
 

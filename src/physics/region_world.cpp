@@ -14,13 +14,15 @@ class RegionWorld::Impl {
   Impl(const core::Scene& scene_in, const Settings& settings)
       : scene(scene_in),
         shapes(std::make_shared<ShapeSet>(scene)),
-        simulation(scene, settings, shapes, timeline),
-        scratch(scene, settings, shapes, timeline),
-        ahead(scene, settings, shapes, timeline) {}
+        places(std::make_shared<StaticPlaces>(scene, *shapes)),
+        simulation(scene, settings, shapes, places, timeline),
+        scratch(scene, settings, shapes, places, timeline),
+        ahead(scene, settings, shapes, places, timeline) {}
 
   const core::Scene& scene;
   Timeline timeline;
   std::shared_ptr<ShapeSet> shapes;
+  std::shared_ptr<const StaticPlaces> places;
   Simulation simulation;
   ScratchWorld scratch;
   ScratchWorld ahead;  ///< for foresee(): clusters that have not joined, whose events are reported when they join
@@ -139,6 +141,8 @@ const core::ControlLog& RegionWorld::controls() const { return impl_->timeline.c
 RayHit RegionWorld::cast(const core::Vec3& from_W, const core::Vec3& to_W) const {
   return impl_->simulation.cast(from_W, to_W);
 }
+
+std::size_t RegionWorld::held_statics() const { return impl_->simulation.held_statics(); }
 
 bool RegionWorld::contains(core::BodyId id) const { return impl_->simulation.contains(id); }
 

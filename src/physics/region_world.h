@@ -99,6 +99,9 @@ class RegionWorld {
   /// The nearest body or static on the segment between two points, in the present state.
   RayHit cast(const core::Vec3& from_W, const core::Vec3& to_W) const;
 
+  /// Number of statics that this world holds at present: those near its bodies, and those that are large or move.
+  std::size_t held_statics() const;
+
   bool contains(core::BodyId id) const;
   std::size_t body_count() const;
 

@@ -3,8 +3,12 @@
 namespace aurasim::physics {
 
 ScratchWorld::ScratchWorld(const core::Scene& scene, const Settings& settings, std::shared_ptr<const ShapeSet> shapes,
-                           const Timeline& timeline)
-    : scene_(&scene), settings_(settings), shapes_(std::move(shapes)), timeline_(timeline) {}
+                           std::shared_ptr<const StaticPlaces> places, const Timeline& timeline)
+    : scene_(&scene),
+      settings_(settings),
+      shapes_(std::move(shapes)),
+      places_(std::move(places)),
+      timeline_(timeline) {}
 
 std::vector<Removal> ScratchWorld::take_removed() {
   return simulation_ ? simulation_->take_removed() : std::vector<Removal>{};
@@ -22,7 +26,7 @@ std::uint64_t ScratchWorld::take_unbearable() { return simulation_ ? simulation_
 
 core::ClusterState ScratchWorld::catch_up(const core::ClusterState& cluster, core::Step from, core::Step to,
                                           const CatchUpListener& caught_up, std::vector<Collision>& collisions) {
-  if (!simulation_) simulation_.emplace(*scene_, settings_, shapes_, timeline_);
+  if (!simulation_) simulation_.emplace(*scene_, settings_, shapes_, places_, timeline_);
   simulation_->watch_contacts(watches_contacts_);
   simulation_->start_at(from);
   simulation_->join(cluster);

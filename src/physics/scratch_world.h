@@ -15,7 +15,7 @@ namespace aurasim::physics {
 class ScratchWorld {
  public:
   ScratchWorld(const core::Scene& scene, const Settings& settings, std::shared_ptr<const ShapeSet> shapes,
-               const Timeline& timeline);
+               std::shared_ptr<const StaticPlaces> places, const Timeline& timeline);
 
   /// Simulates the cluster from state `from` to state `to` and returns it. Calls `caught_up` for each state. First
   /// contacts on the way are appended to `collisions`.
@@ -35,6 +35,7 @@ class ScratchWorld {
   const core::Scene* scene_;
   Settings settings_;
   std::shared_ptr<const ShapeSet> shapes_;
+  std::shared_ptr<const StaticPlaces> places_;
   const Timeline& timeline_;
   std::optional<Simulation> simulation_;
   bool watches_contacts_ = false;

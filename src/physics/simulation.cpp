@@ -56,14 +56,16 @@ void refuse_twins(const std::vector<HostedBody>& bodies) {
 }  // namespace
 
 Simulation::Simulation(const core::Scene& scene, const Settings& settings, std::shared_ptr<const ShapeSet> shapes,
-                       const Timeline& timeline)
+                       std::shared_ptr<const StaticPlaces> places, const Timeline& timeline)
     : scene_(&scene),
       settings_(settings),
       shapes_(std::move(shapes)),
       timeline_(timeline),
+      statics_(scene, shapes_, std::move(places), world_),
       joints_(scene, settings),
       world_(scene.gravity, settings) {
   notes_.give_up_copy();
+  world_.use(&statics_);
   show_statics(step_);
 }
 
@@ -184,11 +186,19 @@ void Simulation::join(const core::ClusterState& cluster) {
 /// The body or static of a reference; null if it is not here.
 btRigidBody* Simulation::find_object(core::ObjectRef ref) {
   if (ref < 0) {
-    const auto place = static_cast<std::size_t>(-1 - ref);
-    return place < statics_.size() ? statics_[place].get() : nullptr;
+    const auto index = static_cast<std::uint32_t>(-1 - ref);
+    return statics_.is_in(index) ? statics_.find(index) : nullptr;
   }
   const HostedBody* const body = table_.find(core::BodyId{static_cast<std::uint64_t>(ref)});
   return body != nullptr && body->born ? body->rigid.get() : nullptr;
+}
+
+/// The same, with statics of which no body has been near yet.
+btRigidBody* Simulation::bring_object(core::ObjectRef ref) {
+  if (ref < 0 && -1 - ref < static_cast<core::ObjectRef>(statics_.size())) {
+    statics_.hold(static_cast<std::uint32_t>(-1 - ref));
+  }
+  return find_object(ref);
 }
 
 core::ObjectRef Simulation::ref_of(const btCollisionObject& object) const {
@@ -214,8 +224,8 @@ void Simulation::restore_contacts(const core::ClusterState& cluster) {
 
 void Simulation::restore_pair(const core::ClusterState& cluster, std::span<const std::uint32_t> records) {
   const core::ManifoldRecord& any = cluster.manifolds[records.front()];
-  btRigidBody* const a = find_object(any.object0);
-  btRigidBody* const b = find_object(any.object1);
+  btRigidBody* const a = bring_object(any.object0);
+  btRigidBody* const b = bring_object(any.object1);
   if (coupling_ != nullptr && (a == nullptr || b == nullptr)) return restore_later(cluster, records);
   if (a == nullptr || b == nullptr || a == b || !(is_ours(*a) || is_ours(*b))) return;
   core::Progress::mark();
@@ -251,6 +261,7 @@ std::vector<core::BodyId> Simulation::body_ids() const {
 void Simulation::step() {
   world_.first_contacts().clear();
   world_.contact_impulses().clear();
+  statics_.drop_some();
   apply_orders(step_ + 1);
   heed_setpoints(step_ + 1);
   start_moving_statics();

@@ -20,6 +20,7 @@
 #include "physics/coupling.h"
 #include "physics/dynamics_world.h"
 #include "physics/halo.h"
+#include "physics/held_statics.h"
 #include "physics/joint_table.h"
 #include "physics/kept_hash.h"
 #include "physics/moving_static.h"
@@ -37,7 +38,7 @@ class Simulation {
  public:
   /// `scene` and `timeline` have to outlive the simulation; both may grow.
   Simulation(const core::Scene& scene, const Settings& settings, std::shared_ptr<const ShapeSet> shapes,
-             const Timeline& timeline);
+             std::shared_ptr<const StaticPlaces> places, const Timeline& timeline);
   ~Simulation();
 
   core::Step step_number() const { return step_; }
@@ -89,9 +90,10 @@ class Simulation {
 
   /// The nearest body or static on the segment from `from_W` to `to_W`.
   RayHit cast(const core::Vec3& from_W, const core::Vec3& to_W) const;
+  /// Number of statics that are held (held_statics.h).
+  std::size_t held_statics() const { return statics_.held_count(); }
 
  private:
-  void make_statics();
   void insert_born();
   void settle_blocks();
   void bind_mechanisms();
@@ -167,6 +169,7 @@ class Simulation {
   std::vector<core::BodyRecord> take_out_all_but(std::span<const core::BodyRecord> bodies, core::Step step);
   int rank_of(core::BodyId id) const;
   btRigidBody* find_object(core::ObjectRef ref);
+  btRigidBody* bring_object(core::ObjectRef ref);
   core::ObjectRef ref_of(const btCollisionObject& object) const;
   void restore_contacts(const core::ClusterState& cluster);
   void restore_pair(const core::ClusterState& cluster, std::span<const std::uint32_t> records);
@@ -200,8 +203,7 @@ class Simulation {
   Settings settings_;
   std::shared_ptr<const ShapeSet> shapes_;
   const Timeline& timeline_;
-  std::vector<std::unique_ptr<btRigidBody>> statics_;  ///< by static of Scene::statics
-  std::vector<bool> static_is_in_;                     ///< by static of Scene::statics: it is in the Bullet world
+  HeldStatics statics_;
   struct MovingStatic {
     std::uint32_t index;
     std::unique_ptr<Belt> belt;

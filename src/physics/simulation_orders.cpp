@@ -149,7 +149,7 @@ double Simulation::coming_kick(const HostedBody& body, std::span<const std::uint
   if (!body.born) return 0;
   double kick = 0;
   for (const std::uint32_t index : coming_statics) {
-    if (bounds_of(*body.rigid).is_near(bounds_of(*statics_[index]))) kick += kShove_m_s;
+    if (bounds_of(*body.rigid).is_near(statics_.bounds(index))) kick += kShove_m_s;
   }
   for (const core::Order& order : timeline_.coming(step_)) {
     if (core::body_of(order.action) != body.id) continue;

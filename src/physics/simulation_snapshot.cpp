@@ -78,7 +78,6 @@ const core::Snapshot& Simulation::snapshot() {
   if (snapshot_is_fresh_) return snapshot_;
   ChangedBodies& changed = notes_.for_snapshot;
   const std::vector<std::uint32_t> coming_statics = timeline_.statics_coming(step_);
-  if (!coming_statics.empty()) make_statics();
   note_moving_statics();
   const std::vector<Shove> shoves = coming_shoves();
   const std::vector<PlacedPush> pushes = coming_pushes();
@@ -87,7 +86,7 @@ const core::Snapshot& Simulation::snapshot() {
     if (const std::optional<core::BodyId> id = core::body_of(order.action)) changed.note(*id);
   }
   for (const PlacedPush& push : pushes) changed.note(table_[push.place].id);
-  for (const std::uint32_t index : coming_statics) note_near(bounds_of(*statics_[index]));
+  for (const std::uint32_t index : coming_statics) note_near(statics_.bounds(index));
   for (const Shove& shove : shoves) note_near(shove.where);
   if (!shoves.empty() && !changed.all()) {  // bodies that move may come to where a static pushes
     for (const std::uint32_t shown : snapshot_.changed) changed.note(snapshot_.bodies[shown].id);

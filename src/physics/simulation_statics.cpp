@@ -18,20 +18,6 @@ constexpr double kBounced = 2;
 
 }  // namespace
 
-/// Makes the statics that were appended to the scene since the last call. They are not in the world yet.
-void Simulation::make_statics() {
-  for (std::size_t i = statics_.size(); i < scene_->statics.size(); ++i) {
-    const core::StaticBody& body = scene_->statics[i];
-    auto info = construction_of(0, shapes_->shape(body.shape), core::Vec3::Zero(), scene_->materials.at(body.material));
-    info.m_startWorldTransform = to_bullet(body.pose);
-    statics_.push_back(std::make_unique<btRigidBody>(info));
-    statics_.back()->setUserIndex(-1 - static_cast<int>(i));
-    use_part_surfaces(*statics_.back());
-    static_is_in_.push_back(false);
-    if (body.moves()) make_moving(static_cast<std::uint32_t>(i), body.path.has_value());
-  }
-}
-
 void Simulation::make_moving(std::uint32_t index, bool goes) {
   const auto place = std::ranges::lower_bound(moving_statics_, index, {}, &MovingStatic::index);
   if (place != moving_statics_.end() && place->index == index) {
@@ -42,8 +28,9 @@ void Simulation::make_moving(std::uint32_t index, bool goes) {
     throw std::invalid_argument(scene_->statics[index].name + " moves, which this solver does not know");
   }
   const MovingStatic& made = *moving_statics_.insert(place, {index, std::make_unique<Belt>(), goes});
-  physics::make_moving(*statics_[index], *made.belt);
-  if (static_is_in_[index]) world_.begin_moving(*statics_[index]);
+  btRigidBody& fixed = statics_.hold_always(index);
+  physics::make_moving(fixed, *made.belt);
+  if (statics_.is_in(index)) world_.begin_moving(fixed);
 }
 
 /// Makes statics movable that orders or programs have moved since the last call.
@@ -56,20 +43,12 @@ void Simulation::note_moving_statics() {
 
 /// Adds and removes statics so that the world has those of state `n`. Wakes bodies that touch or rested on them.
 void Simulation::show_statics(core::Step n) {
-  make_statics();
-  for (std::size_t i = 0; i < statics_.size(); ++i) {
-    const bool stands = timeline_.stands(static_cast<std::uint32_t>(i), n);
-    if (stands == static_is_in_[i]) continue;
-    btRigidBody* const changing = statics_[i].get();
-    const Bounds there = bounds_of(*changing);
-    wake_near({&there, 1});
-    if (stands) {
-      world_.insert_static(*changing, 1 + static_cast<int>(i), to_bullet(scene_->statics[i].pose));
-    } else {
-      world_.remove_static(*changing);
-    }
-    static_is_in_[i] = stands;
+  const auto first_new = static_cast<std::uint32_t>(statics_.size());
+  const std::vector<Bounds> changed = statics_.show(timeline_, n);
+  for (auto i = first_new; i < statics_.size(); ++i) {
+    if (scene_->statics[i].moves()) make_moving(i, scene_->statics[i].path.has_value());
   }
+  if (!changed.empty()) wake_near(changed);
 }
 
 void Simulation::wake_near(std::span<const Bounds> changing) {
@@ -109,8 +88,8 @@ void Simulation::place_moving_statics() {
   for (const MovingStatic& moving : moving_statics_) {
     if (!moving.goes) continue;
     const btTransform pose = to_bullet(pose_of_static(moving.index, step_));
-    statics_[moving.index]->setWorldTransform(pose);
-    if (static_is_in_[moving.index]) world_.bound(*statics_[moving.index], pose);
+    statics_.find(moving.index)->setWorldTransform(pose);
+    if (statics_.is_in(moving.index)) world_.bound(*statics_.find(moving.index), pose);
   }
 }
 
@@ -119,9 +98,9 @@ void Simulation::start_moving_statics() {
   std::vector<Bounds> ways;
   note_moving_statics();
   for (const MovingStatic& moving : moving_statics_) {
-    if (!static_is_in_[moving.index]) continue;
+    if (!statics_.is_in(moving.index)) continue;
     const core::StaticBody& body = scene_->statics[moving.index];
-    btRigidBody& rigid = *statics_[moving.index];
+    btRigidBody& rigid = *statics_.find(moving.index);
     const core::Pose X_WS = pose_of_static(moving.index, step_ + 1);
     const core::Twist twist = core::twist_between(pose_of_static(moving.index, step_), X_WS, settings_.step_s);
     const btTransform after = to_bullet(X_WS);
@@ -140,10 +119,10 @@ void Simulation::start_moving_statics() {
 std::vector<Simulation::Shove> Simulation::coming_shoves() const {
   std::vector<Shove> shoves;
   for (const MovingStatic& moving : moving_statics_) {
-    if (!static_is_in_[moving.index]) continue;
+    if (!statics_.is_in(moving.index)) continue;
     const core::StaticBody& body = scene_->statics[moving.index];
-    const btCollisionShape& shape = *statics_[moving.index]->getCollisionShape();
-    Shove shove{bounds_of(*statics_[moving.index]), 0};
+    const btCollisionShape& shape = *statics_.find(moving.index)->getCollisionShape();
+    Shove shove{bounds_of(*statics_.find(moving.index)), 0};
     const core::Step last = moving.goes ? step_ + foreseen() : step_;
     core::Pose before = pose_of_static(moving.index, step_);
     for (core::Step n = step_ + 1; n <= last; ++n) {

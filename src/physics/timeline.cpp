@@ -56,6 +56,12 @@ std::span<const core::Order> Timeline::coming(core::Step step) const {
   return {std::lower_bound(orders_.begin(), orders_.end(), key, earlier), orders_.end()};
 }
 
+std::vector<std::uint32_t> Timeline::changing_statics() const {
+  std::vector<std::uint32_t> changing;
+  for (const Life& life : lives_) changing.push_back(life.index);
+  return changing;
+}
+
 std::vector<std::uint32_t> Timeline::statics_coming(core::Step step) const {
   constexpr core::Step kEver = std::numeric_limits<core::Step>::max();
   std::vector<std::uint32_t> changing;

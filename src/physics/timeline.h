@@ -24,6 +24,8 @@ class Timeline {
   bool stands(std::uint32_t static_index, core::Step step) const;
   /// Is there any static that is added or removed at some time?
   bool statics_change() const { return !lives_.empty(); }
+  /// The statics that are added or removed at some time. Ascending.
+  std::vector<std::uint32_t> changing_statics() const;
 
   /// Orders about bodies to be executed just before state `step` is computed, in sequence.
   std::span<const core::Order> due(core::Step step) const;
