@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "aurasim.h"
+#include "core/wall_clock.h"
 #include "dds/endpoints.h"
 #include "dds/node_roster.h"
 #include "dds/random_id.h"
@@ -225,7 +226,7 @@ bool ControlBus::publish_status(const messages::Status& status) {
   }
   impl_->participant.progress();
   messages::encode(status, impl_->status);
-  impl_->status.sent_ns(wall_ns());
+  impl_->status.sent_ns(core::wall_clock_ns());
   impl_->status_writer->forget_all();
   return impl_->status_writer->write(&impl_->status) != WriteResult::kFailed;
 }
@@ -293,7 +294,7 @@ std::uint64_t ControlBus::send(messages::RunCommand command) {
   }
   impl_->remember(command.request, impl_->command_writer->guid());
   messages::encode(command, impl_->sender, impl_->command);
-  impl_->command.sent_ns(wall_ns());
+  impl_->command.sent_ns(core::wall_clock_ns());
   if (impl_->command_writer->write(&impl_->command) == WriteResult::kFailed) {
     throw DdsError(fmt::format("cannot send the command {}: run_control does not take it", name_of(command.kind)));
   }

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/wall_clock.h"
 #include "dds/hub_qos.h"
 #include "dds/many_nodes.h"
 #include "rtps/datagram_guard.h"
@@ -202,7 +203,7 @@ WriteResult Writer::write_parts(void* message, std::uint32_t message_B) {
 /// Writes a sample, a second time if need be.
 WriteResult Writer::write_in_two_tries(void* sample, eprosima::fastrtps::rtps::WriteParams& params) {
   const auto write = [&] {
-    params.source_timestamp().from_ns(sent_.next(wall_ns()));
+    params.source_timestamp().from_ns(sent_.next(core::wall_clock_ns()));
     return writer_->write(sample, params);
   };
   WriteResult result = WriteResult::kSent;

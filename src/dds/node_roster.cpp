@@ -140,9 +140,11 @@ void NodeRoster::choose_publisher(RegionId region, const std::vector<Received>& 
 }
 
 bool NodeRoster::is_lost(const Received& one, const RemoteWriter* writer) const {
-  if (one.by_hub && settings_.stays_on_this_host)
-    return shows_no_life(one) && settings_.now() >= one.alive + settings_.until_last_word;
-  if (one.by_hub) return hub_silence_.is_believed(one.seen.seen, settings_.silence_by_hub, settings_.now());
+  if (one.by_hub) {
+    return settings_.stays_on_this_host
+               ? shows_no_life(one) && settings_.now() >= one.alive + settings_.until_last_word
+               : hub_silence_.is_believed(one.seen.seen, settings_.silence_by_hub, settings_.now());
+  }
   if (writer == nullptr || writer->lost) return true;
   return !settings_.believes_silence && writer->silent_since && shows_no_life(one);
 }

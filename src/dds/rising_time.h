@@ -2,15 +2,9 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 
 namespace aurasim::dds {
-
-/// Wall clock, nanoseconds since 1970.
-inline std::int64_t wall_ns() {
-  return std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
-}
 
 /// Fast DDS 2.9.1 sorts what a reader has received of one writer by number, and of two writers by time of sending
 /// (ChangeComparison.hpp). If the times of a writer do not rise with its numbers, this is no order: A1 < A2 by number,

@@ -34,8 +34,8 @@ struct Settings {
   std::shared_ptr<Introductions> introductions;
   /// "address" or "address:port" (UDP); replaces the profile's initial peers. For a hub: the hubs of other sites.
   std::vector<std::string> peers;
-  std::string
-      hub;  ///< address of the site's hub (Discovery::kNeighbours); empty: the first of `interfaces`, or loopback
+  /// Address of the site's hub (Discovery::kNeighbours). Empty: the first of `interfaces`, or loopback.
+  std::string hub;
   /// Overrides the profile's properties aurasim.impair.*.
   ImpairmentOverrides impairment;
   /// Separates the random numbers of participants. Each participant of a run uses a different value, so that they lose

@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/wall_clock.h"
+
 namespace aurasim::node {
 
 using std::chrono::nanoseconds;
 
-std::int64_t wall_clock_ns() {
-  return std::chrono::duration_cast<nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
-Instant read_clocks() { return {std::chrono::steady_clock::now(), wall_clock_ns()}; }
+Instant read_clocks() { return {std::chrono::steady_clock::now(), core::wall_clock_ns()}; }
 
 void Pacer::set_epoch(core::Step first, std::int64_t epoch_ns, nanoseconds clock_ahead, const Instant& now) {
   const bool is_one_clock = std::chrono::abs(clock_ahead) < kClockTolerance;

@@ -17,8 +17,6 @@ struct Instant {
 };
 
 Instant read_clocks();
-/// Nanoseconds since 1970.
-std::int64_t wall_clock_ns();
 
 /// Wall clocks that differ by less than this are taken as equal: an epoch then holds to the nanosecond, however long
 /// its message was under way. If they differ by more, the epoch counts from the moment when the message came.

@@ -113,7 +113,7 @@ void Broadphase::rayTest(const btVector3& from, const btVector3& to, btBroadphas
     tree->rayTestInternal(tree->m_root, from, to, callback.m_rayDirectionInverse, callback.m_signs,
                           callback.m_lambda_max, low, high, stack, each);
   }
-  // Of two hits at one place the first one counts, which must not depend on the trees.
+  // The first of two hits at one place counts, so their order must not depend on the trees.
   std::ranges::sort(each.met, {}, [](const btBroadphaseProxy* proxy) { return proxy->m_uniqueId; });
   for (btBroadphaseProxy* proxy : each.met) callback.process(proxy);
 }

@@ -28,7 +28,7 @@ constexpr btScalar kPart = btScalar(1e-3);
 /// Faces whose normals have a larger product face the same way, so that `kStep_m` holds between them.
 constexpr btScalar kFacing = btScalar(0.7);
 constexpr int kProjections = 20;
-/// Of contacts that are deeper than this nothing is asked about other pieces, because these may be out of reach.
+/// Contacts that are deeper than this are not compared with other pieces, because those may be out of reach.
 constexpr btScalar kDeepest_m = btScalar(1.5);
 static_assert(kDeepest_m + 0.1 < InnerEdges::kReach_m);
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/wall_clock.h"
 #include "process/run_view.h"
 #include "process/step_back.h"
 
@@ -28,7 +29,7 @@ void ClientService::serve_clients() {
   run_.status.content().meshes = run_.endpoints.commands().meshes();
   // A run command and no order, because steps may be seconds apart.
   if (const std::optional<double> rate = run_.endpoints.commands().take_wanted_rate()) {
-    executor_.command_all(run_.schedule.rate_command(*rate, run_.node->current_step(), node::wall_clock_ns()));
+    executor_.command_all(run_.schedule.rate_command(*rate, run_.node->current_step(), core::wall_clock_ns()));
   }
 }
 
@@ -37,7 +38,7 @@ void ClientService::compute_until_change() {
   const std::optional<core::Step> change = run_.endpoints.commands().change_at();
   if (!change) return;
   auto steps =
-      run_.schedule.steps_to(*change, run_.node->current_step(), run_.node->confirmed_step(), node::wall_clock_ns());
+      run_.schedule.steps_to(*change, run_.node->current_step(), run_.node->confirmed_step(), core::wall_clock_ns());
   if (!steps) return;
   steps->run = run_.options.run;
   executor_.command_all(*steps);
@@ -62,7 +63,7 @@ void ClientService::step_back(const RunView& view) {
 /// Sends a restore as after a death. No node has died, so the new generation begins at once, and is paused if this one
 /// was.
 void ClientService::send_back(messages::RunCommand restore, const core::Command& back) {
-  restore.epoch_ns = node::wall_clock_ns() + kNoticeOfStepBack.count();
+  restore.epoch_ns = core::wall_clock_ns() + kNoticeOfStepBack.count();
   run_.schedule.hold_earlier_in(restore.at_step);
   run_.endpoints.commands().go_back_to(back, restore.at_step);
   run_.send_restore(restore);

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "core/wall_clock.h"
+
 namespace aurasim::process {
 namespace {
 
@@ -108,7 +110,7 @@ void CommandExecutor::execute_late_commands() {
 /// True if the command is plausible. Otherwise it is refused, and counted against its sender.
 bool CommandExecutor::is_plausible(const messages::RunCommand& command) {
   const core::Generation newest = std::max(run_.restoration.newest(run_.generation), run_.status.content().era);
-  const std::string why = run_.command_queue.problem_with(command, newest, node::wall_clock_ns());
+  const std::string why = run_.command_queue.problem_with(command, newest, core::wall_clock_ns());
   if (!why.empty()) run_.control().refuse(command, why);
   return why.empty();
 }

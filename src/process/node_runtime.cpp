@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "config/launch_variants.h"
+#include "core/wall_clock.h"
 #include "cut/saved_world.h"
 #include "dds/dds_seams.h"
 #include "dds/random_id.h"
@@ -131,7 +132,7 @@ void NodeRuntime::note_exchanges(Clock::time_point now) {
 }
 
 void NodeRuntime::start_when_all_wait() {
-  auto command = start.to_send(control().statuses(), options.run, node::wall_clock_ns());
+  auto command = start.to_send(control().statuses(), options.run, core::wall_clock_ns());
   if (!command) return;
   command->request = control().send(*command);
   start.accept(*command);

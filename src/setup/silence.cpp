@@ -21,8 +21,7 @@ void fail_for_want_of_a_run(const command_line::FileArguments& files, const conf
   if (!participant.has_way_to_all()) {
     spdlog::error(
         "no hub of a run is in DDS domain {}{}: dds.discovery is neighbours here, and there is no run, or one with "
-        "other "
-        "discovery. Another domain is named by --set dds.domain=N, another site's hub by --set dds.hub=ADDRESS",
+        "other discovery. Another domain is named by --set dds.domain=N, another site's hub by --set dds.hub=ADDRESS",
         launch.dds.domain, launch.dds.hub.empty() ? "" : " at " + launch.dds.hub);
     command_line::leave(1);
   }

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "core/horizon.h"
+#include "core/wall_clock.h"
 #include "node/pacer.h"
 
 namespace aurasim::steering {
@@ -119,7 +120,7 @@ messages::RunCommand RunSteering::send(Kind kind, std::int64_t count) {
     last_step_ = {command.generation, command.at_step, Clock::now()};
   }
   const double delay_s = kNoticeS + (running ? static_cast<double>(notice) * launch_.step_s() : 0);
-  command.epoch_ns = node::wall_clock_ns() + static_cast<std::int64_t>(1e9 * delay_s);
+  command.epoch_ns = core::wall_clock_ns() + static_cast<std::int64_t>(1e9 * delay_s);
   command.request = control_.send(command);
   return command;
 }
@@ -141,7 +142,7 @@ messages::RunCommand RunSteering::send_step(core::Generation generation, core::S
   for (const auto& [region, seen] : control_.statuses()) {
     if (belongs(seen)) command.run = seen.status.run;
   }
-  command.epoch_ns = node::wall_clock_ns();
+  command.epoch_ns = core::wall_clock_ns();
   command.request = control_.send(command);
   return command;
 }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "child.h"
+#include "core/wall_clock.h"
 #include "messages/control_codec.h"
 #include "messages/control_samples.h"
 #include "transport_fixture.h"
@@ -179,7 +180,7 @@ TEST(Status, SaysItselfHowFarTheSendersClockIsAhead) {
                 sender.domain().wakeup());
   wire::NodeStatus status;
   messages::encode(status_of(0), status);
-  status.sent_ns(wall_ns() + std::chrono::nanoseconds(1h).count());
+  status.sent_ns(core::wall_clock_ns() + std::chrono::nanoseconds(1h).count());
   ASSERT_NE(writer.write(&status), WriteResult::kFailed);
   Member watcher(own_domain());
   ASSERT_TRUE(watcher.wait_until([&] { return watcher.bus.statuses().contains(RegionId{0}); }));

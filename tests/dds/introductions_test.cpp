@@ -102,7 +102,7 @@ TEST_F(Introducing, ThoseWhoSpeakByTheHubAloneAreNotIntroduced) {
   EXPECT_EQ(introduced(1s), Pairs{});
 }
 
-/// What passes between two sites: each hub knows the other one, and announces its own nodes to it.
+/// The hubs of two sites know each other, and each announces its own nodes to the other.
 TEST_F(Introducing, HubsOfOtherSitesMeetTheNodesOfThisOne) {
   for (const std::uint8_t number : {1, 2, 9}) join(number);
   add_writer(1, {"hub/region/1"}, "node_status");

@@ -3,7 +3,9 @@
 
 #include <chrono>
 #include <csignal>
+#include <functional>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -23,12 +25,14 @@ class ARoster : public ::testing::Test {
     guid.entityId = 0x103U;
     return guid;
   }
-  void receive_status(std::uint32_t region, unsigned char process) {
+  explicit ARoster(RosterSettings of = settings()) : roster_(std::move(of), speakers_) {}
+  void receive_status(std::uint32_t region, unsigned char process, bool by_hub = false) {
     messages::Status status;
     status.region = RegionId{region};
     status.process = process;
     Origin origin;
     origin.writer = writer_of(process);
+    origin.by_hub = by_hub;
     roster_.note(status, origin);
   }
   void look() { roster_.look({live_writer(1), live_writer(2)}); }
@@ -47,7 +51,7 @@ class ARoster : public ::testing::Test {
   }
 
   Speakers speakers_;
-  NodeRoster roster_{settings(), speakers_};
+  NodeRoster roster_;
 };
 
 TEST_F(ARoster, HasNewsOnceAStatusHasCome) {
@@ -129,24 +133,15 @@ TEST_F(ARoster, WaitsForTheLastWordOfAProcessThatHasEndedWhereItComesByAHub) {
 /// Statuses that come by hubs of several hosts, in virtual time. Hubs are processes 101 and 102.
 class ARosterByHubs : public ARoster {
  protected:
-  ARosterByHubs() {
+  ARosterByHubs() : ARoster(by_hubs([this] { return now_; })) {
     for (const unsigned char hub : {101, 102}) speakers_.add_hub(writer_of(hub).guidPrefix);
   }
   static constexpr auto kSilence = std::chrono::milliseconds(15500);
-  RosterSettings here() {
-    RosterSettings here = settings();
-    here.silence_by_hub = kSilence;
-    here.now = [this] { return now_; };
-    return here;
-  }
-  void receive_status_by_hub(std::uint32_t region, unsigned char process) {
-    messages::Status status;
-    status.region = RegionId{region};
-    status.process = process;
-    Origin origin;
-    origin.writer = writer_of(process);
-    origin.by_hub = true;
-    roster_.note(status, origin);
+  static RosterSettings by_hubs(std::function<std::chrono::steady_clock::time_point()> now) {
+    RosterSettings by_hubs = settings();
+    by_hubs.silence_by_hub = kSilence;
+    by_hubs.now = std::move(now);
+    return by_hubs;
   }
   void hub_comes(unsigned char number) {
     hubs_.push_back(live_writer(number));
@@ -155,7 +150,7 @@ class ARosterByHubs : public ARoster {
   /// Looks several times a second; meanwhile statuses come of `heard`, which is process and region.
   void pass(std::chrono::milliseconds time, const std::vector<unsigned char>& heard) {
     for (const auto end = now_ + time; now_ < end; now_ += std::chrono::milliseconds(100)) {
-      for (const unsigned char one : heard) receive_status_by_hub(one, one);
+      for (const unsigned char one : heard) receive_status(one, one, true);
       roster_.look(hubs_);
     }
   }
@@ -163,7 +158,6 @@ class ARosterByHubs : public ARoster {
 
   std::chrono::steady_clock::time_point now_{std::chrono::hours(1)};
   std::vector<RemoteWriter> hubs_;
-  NodeRoster roster_{here(), speakers_};
 };
 
 TEST_F(ARosterByHubs, TakesANodeForLostOfWhichNoHubPassesAnythingOn) {
