@@ -23,12 +23,8 @@ constexpr const char* kOurs = "SECURITY_AURASIM";
 constexpr const char* kReasons = "SECURITY_AUTHENTICATION";
 constexpr const char* kRefused = "refused ";
 
-// Limits on what unknown processes can make this process log and remember.
+// Limits on what unknown processes can make this process remember.
 constexpr std::size_t kMostNames = 4096;
-constexpr std::size_t kMostSaid = 1024;
-constexpr auto kSayAgain = std::chrono::minutes(1);
-constexpr auto kWindow = std::chrono::seconds(10);
-constexpr std::uint64_t kMostInWindow = 30;
 constexpr std::size_t kLongestClaim = 128;
 
 /// Length of a participant's number in text, which is written 01.0f.(...).c1|0.0.1.c1: twelve octets of the
@@ -146,11 +142,11 @@ void SecurityLog::receive(const std::string& message, const std::string& categor
     const std::lock_guard lock(mutex_);
     if (category == kOurs) {
       const std::string reason = std::exchange(reason_, {});
-      texts = worth_saying(fmt::format("{}{}", with_names(message), reason.empty() ? "" : ": " + reason));
+      texts = worth_saying(message, reason.empty() ? "" : ": " + reason);
     } else if (category == kReasons) {
       reason_ = without_place(message);
     } else {
-      texts = worth_saying(with_names(without_place(message)));
+      texts = worth_saying(without_place(message), "");
     }
     tells = tells_;
   }
@@ -161,12 +157,13 @@ void SecurityLog::receive(const std::string& message, const std::string& categor
   }
 }
 
-std::string SecurityLog::with_names(std::string message) const {
+std::vector<std::string> SecurityLog::worth_saying(std::string message, const std::string& reason) {
   const std::size_t bar = message.find('|');
-  if (bar == std::string::npos || bar < kPrefix) return message;
-  const auto name = names_.find(message.substr(bar - kPrefix, kPrefix));
+  if (bar == std::string::npos || bar < kPrefix) return limit_.worth_saying("", message + reason, Clock::now());
+  const std::string prefix = message.substr(bar - kPrefix, kPrefix);
+  const auto name = names_.find(prefix);
   if (name != names_.end()) message.insert(bar - kPrefix, fmt::format("[{}] ", name->second));
-  return message;
+  return limit_.worth_saying(prefix, message + reason, Clock::now());
 }
 
 std::string SecurityLog::with_name_of_process(std::string text) const {
@@ -176,24 +173,6 @@ std::string SecurityLog::with_name_of_process(std::string text) const {
   const auto name = names_.find(text.substr(kBefore.size(), kPrefix));
   if (name != names_.end()) text.insert(kBefore.size() + kPrefix, fmt::format(" [{}]", name->second));
   return text;
-}
-
-std::vector<std::string> SecurityLog::worth_saying(const std::string& text) {
-  const Clock::time_point now = Clock::now();
-  if (const auto said = said_.find(text); said != said_.end() && now < said->second + kSayAgain) return {};
-  if (now > window_begin_ + kWindow) {
-    window_begin_ = now;
-    in_window_ = 0;
-  }
-  if (++in_window_ > kMostInWindow) {
-    ++unsaid_;
-    return {};
-  }
-  if (said_.size() >= kMostSaid) said_.clear();
-  said_[text] = now;
-  const std::uint64_t unsaid = std::exchange(unsaid_, 0);
-  if (unsaid == 0) return {text};
-  return {fmt::format("{} more refusals were not listed", unsaid), text};
 }
 
 }  // namespace aurasim::dds

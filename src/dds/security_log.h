@@ -4,7 +4,6 @@
 #pragma once
 
 #include <chrono>
-#include <cstdint>
 #include <functional>
 #include <map>
 #include <mutex>
@@ -13,6 +12,8 @@
 
 #include <fastdds/rtps/common/Guid.h>
 #include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
+
+#include "dds/refusal_limit.h"
 
 namespace aurasim::dds {
 
@@ -50,20 +51,16 @@ class SecurityLog {
   using Clock = std::chrono::steady_clock;
 
   SecurityLog();
-  /// Returns the messages to report: `text`, preceded by the number of messages left out so far if there were any.
-  /// Empty if `text` was just reported or there is too much to report.
-  std::vector<std::string> worth_saying(const std::string& text);
-  std::string with_names(std::string message) const;
+  /// Returns the messages to report of a refusal: `message` with the participant's name, and `reason`; RefusalLimit
+  /// says how many.
+  std::vector<std::string> worth_saying(std::string message, const std::string& reason);
 
   mutable std::mutex mutex_;
   std::map<int, Tell> tells_;
   int next_number_ = 0;
   std::map<std::string, std::string> names_;  ///< by the text of the participant's prefix
   std::string reason_;                        ///< last logged reason, for the refusal that follows
-  std::map<std::string, Clock::time_point> said_;
-  Clock::time_point window_begin_{};
-  std::uint64_t in_window_ = 0;
-  std::uint64_t unsaid_ = 0;
+  RefusalLimit limit_;
 };
 
 }  // namespace aurasim::dds

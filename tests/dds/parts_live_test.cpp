@@ -81,7 +81,8 @@ class PartsLive : public ::testing::Test {
   void exchange_large_messages() {
     const auto begin = Clock::now();
     a_->peer.transport.send(large_messages());
-    ASSERT_EQ(a_->checkpoints.send_to_keepers(large_checkpoint()), 1U);
+    // Its reader may still be unknown: with losses endpoints are matched seconds apart.
+    ASSERT_TRUE(holds_in_time([&] { return a_->checkpoints.send_to_keepers(large_checkpoint()) == 1; }));
     core::Replica key = messages::testing::replica_of(2000, core::RegionId{0});
     key.key_frame = true;
     key.removed.clear();
@@ -152,21 +153,25 @@ TEST_F(PartsLive, ArriveThoughAQuarterOfTheDatagramsIsLost) {
 /// A node sends while it has only some parts of what another one sends.
 TEST_F(PartsLive, LeaveNothingInWhatIsSentMeanwhile) {
   meet(0.25);
-  constexpr std::size_t kBatches = 10;
+  constexpr std::size_t kBatches = 10;  // of a round
+  constexpr std::size_t kAnswers = 6;   // fewer would show nothing
   const core::AuraBatch header = messages::testing::batch_of(0, core::RegionId{1});
   core::Outbox small;  // with the octets of a part in it it would still fit into a datagram
   small.aura.source = header.source;
   small.aura.generation = header.generation;
   small.aura.map_version = header.map_version;
-  for (std::size_t i = 0; i < kBatches; ++i) a_->peer.send_batch(static_cast<core::Step>(i), 3000);
   Peer &a = a_->peer, &b = b_->peer;
-  std::size_t answers = 0;
-  ASSERT_TRUE(take_until(b, [&] {
-    small.aura.stamp = static_cast<core::Step>(answers++);
-    b.transport.send(small);
-    return b.inbox.auras.size() == kBatches;
-  }));
-  ASSERT_GT(answers, 5U) << "or this test shows nothing";
+  std::size_t sent = 0, answers = 0;
+  // On a busy machine a whole round may have arrived before b looks for the second time.
+  for (int round = 0; round < 100 && answers < kAnswers; ++round) {
+    for (std::size_t i = 0; i < kBatches; ++i) a.send_batch(static_cast<core::Step>(sent++), 3000);
+    ASSERT_TRUE(take_until(b, [&] {
+      small.aura.stamp = static_cast<core::Step>(answers++);
+      b.transport.send(small);
+      return b.inbox.auras.size() == sent;
+    }));
+  }
+  ASSERT_GE(answers, kAnswers);
   ASSERT_TRUE(take_until(a, [&] { return a.inbox.auras.size() == answers; })) << a.inbox.auras.size();
   for (const core::AuraBatch& batch : a.inbox.auras) EXPECT_TRUE(batch.updates.empty());
   EXPECT_EQ(a.transport.counters().aura.refused.total(), 0U);
