@@ -65,6 +65,12 @@ messages::Checkpoint large_checkpoint() {
   return {core::RegionId{0}, messages::Checkpoint::Kind::kToKeep, 1, 5, kPart};
 }
 
+/// Sends one, as soon as its reader is known: with losses endpoints are matched seconds apart.
+bool is_sent_in_time(CheckpointBus& from) {
+  bool is_sent = false;
+  return holds_in_time([&] { return is_sent |= from.send_to_keepers(large_checkpoint()) == 1; });
+}
+
 class PartsLive : public ::testing::Test {
  protected:
   void meet(double loss) {
@@ -81,8 +87,7 @@ class PartsLive : public ::testing::Test {
   void exchange_large_messages() {
     const auto begin = Clock::now();
     a_->peer.transport.send(large_messages());
-    // Its reader may still be unknown: with losses endpoints are matched seconds apart.
-    ASSERT_TRUE(holds_in_time([&] { return a_->checkpoints.send_to_keepers(large_checkpoint()) == 1; }));
+    ASSERT_TRUE(is_sent_in_time(a_->checkpoints));
     core::Replica key = messages::testing::replica_of(2000, core::RegionId{0});
     key.key_frame = true;
     key.removed.clear();
@@ -197,8 +202,7 @@ TEST_F(PartsLive, ArriveWithKeysThoughAQuarterOfTheDatagramsIsLost) {
   const auto begin = Clock::now();
   a.transport.send(large_messages());
   expect_large_messages(b);
-  bool is_sent = false;
-  ASSERT_TRUE(holds_in_time([&] { return is_sent |= from.send_to_keepers(large_checkpoint()) == 1; }));
+  ASSERT_TRUE(is_sent_in_time(from));
   expect_checkpoint(to);
   std::cout << "all is there after " << std::chrono::duration<double, std::milli>(Clock::now() - begin).count()
             << " ms\n";
