@@ -35,6 +35,9 @@ constexpr int lookahead_at_start(int lookahead) { return 4 * lookahead; }
 /// Steps between an introduction and the state from which on the two regions listen to each other. By then both have
 /// received it, and have had half a second (at 60 steps a second) to find each other on the network.
 constexpr Step introduction(int lookahead) { return lookahead + 1 + 30; }
+/// Regions that have been introduced listen to each other for so many states after the last introduction. Longer than
+/// an introduction looks ahead, so that those whose bodies come and go are not introduced again and again.
+constexpr Step listening(int lookahead) { return 2 * introduction(lookahead); }
 
 // Checking, and computing again.
 

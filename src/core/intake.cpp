@@ -59,9 +59,17 @@ const Neighbour* Intake::find(RegionId id) const {
 
 Neighbour* Intake::find(RegionId id) { return const_cast<Neighbour*>(std::as_const(*this).find(id)); }
 
+/// The region that has published state `stamp`, or is to: one that leaves, or a neighbour.
+Neighbour* Intake::speaker(RegionId id, Step stamp) {
+  for (Leaver& leaver : leavers_) {
+    if (leaver.neighbour.id() == id && stamp < leaver.end) return &leaver.neighbour;
+  }
+  return find(id);
+}
+
 template <class Message>
 bool Intake::belongs(const Message& message, std::uint64_t map_version) {
-  const Neighbour* neighbour = find(message.source);
+  const Neighbour* neighbour = speaker(message.source, message.stamp);
   const bool is_current = message.generation == settings_.generation && map_version == map_version_;
   if (neighbour && neighbour->alive() && is_current) return message.redo == settings_.redo;
   ++counters_.strangers;
@@ -71,9 +79,9 @@ bool Intake::belongs(const Message& message, std::uint64_t map_version) {
 /// True if the message is of a region that is not a neighbour of this node yet. That region may have received the
 /// introduction before this node.
 template <class Message>
-bool Intake::is_early(const Message& message) const {
+bool Intake::is_early(const Message& message) {
   const bool is_region = value_of(message.source) < vicinity_.map.size() && message.source != vicinity_.self;
-  return is_region && find(message.source) == nullptr && message.generation == settings_.generation &&
+  return is_region && speaker(message.source, message.stamp) == nullptr && message.generation == settings_.generation &&
          message.redo == settings_.redo && message.map_version == map_version_;
 }
 
@@ -92,6 +100,28 @@ void Intake::listen_to(RegionId region, Step begin) {
   accept(came);
 }
 
+void Intake::leave(RegionId region, Step end) {
+  const auto place = std::ranges::find(neighbours_, region, &Neighbour::id);
+  if (place == neighbours_.end()) return;
+  leavers_.push_back({std::move(*place), end});
+  neighbours_.erase(place);
+}
+
+bool Intake::is_alive(RegionId region) const {
+  const Neighbour* const neighbour = find(region);
+  return neighbour == nullptr || neighbour->alive();
+}
+
+/// Forgets those of which everything had taken effect when receive() was called last.
+void Intake::forget_leavers() {
+  std::erase_if(leavers_, [this](const Leaver& leaver) {
+    if (leaver.neighbour.alive() && leaver.neighbour.applied() < leaver.end - 1) return false;
+    if (!has_all(leaver.neighbour, leaver.end - 1)) return false;
+    left_.push_back(leaver.neighbour.id());
+    return true;
+  });
+}
+
 void Intake::accept(Inbox& inbox) {
   take_all(inbox.auras, settings_, [this](AuraBatch& batch) {
     if (is_early(batch)) {
@@ -99,7 +129,7 @@ void Intake::accept(Inbox& inbox) {
       return;
     }
     if (!belongs(batch, batch.map_version)) return;
-    Neighbour& neighbour = *find(batch.source);
+    Neighbour& neighbour = *speaker(batch.source, batch.stamp);
     if (batch.word > 0) {
       const bool is_new = batch.word == kGathered ? batch.stamp == settings_.start && neighbour.note_gathered(batch)
                                                   : neighbour.accept_word(std::move(batch));
@@ -125,7 +155,7 @@ void Intake::accept(HandOff& hand_off) {
     return;
   }
   if (!belongs(hand_off, hand_off.map_version)) return;
-  if (hand_off.stamp > find(hand_off.source)->received() + kMostStatesAhead) {
+  if (hand_off.stamp > speaker(hand_off.source, hand_off.stamp)->received() + kMostStatesAhead) {
     return accept(Refusal{hand_off.source, hand_off.generation, hand_off.stamp, MessageKind::kHandOff, "far ahead",
                           hand_off.redo});
   }
@@ -146,7 +176,7 @@ void Intake::note_adopted(const AuraBatch& batch) {
 /// Marks the source of a refused message dead. The message is lost and later ones are useless without it, so waiting
 /// for that neighbour would never end.
 void Intake::accept(const Refusal& refusal) {
-  Neighbour* const neighbour = find(refusal.source);
+  Neighbour* const neighbour = speaker(refusal.source, refusal.stamp);
   if (!neighbour || !neighbour->alive() || refusal.generation != settings_.generation) {
     ++counters_.strangers;
     return;
@@ -158,6 +188,10 @@ void Intake::accept(const Refusal& refusal) {
 void Intake::accept(const PeerEvent& event) {
   Neighbour* neighbour = find(event.region);
   if (neighbour && neighbour->alive() && event.change == PeerChange::kLost) mark_dead(*neighbour);
+  for (Leaver& leaver : leavers_) {
+    const bool is_lost = leaver.neighbour.id() == event.region && event.change == PeerChange::kLost;
+    if (is_lost && leaver.neighbour.alive()) mark_dead(leaver.neighbour);
+  }
 }
 
 void Intake::mark_dead(Neighbour& neighbour) {
@@ -174,6 +208,11 @@ bool Intake::keeps_waiting(const Neighbour& neighbour, Step n) const {
   const Step needed = needed_for(n);
   if (neighbour.alive() && !neighbour.has_gathered()) return true;
   return needed >= settings_.start && !has_all(neighbour, needed);
+}
+
+/// Nothing is waited for that it does not publish any more.
+bool Intake::keeps_waiting(const Leaver& leaver, Step n) const {
+  return keeps_waiting(leaver.neighbour, std::min(n, leaver.end - 1 + settings_.lookahead));
 }
 
 bool Intake::knows_all_of_start() const {
@@ -206,13 +245,17 @@ bool Intake::all_have_said(Step stamp, std::uint32_t number) const {
 
 bool Intake::ready(Step n) const {
   if (settings_.sync == SyncMode::kFreeRunning) return true;
-  return std::none_of(neighbours_.begin(), neighbours_.end(), [&](const Neighbour& q) { return keeps_waiting(q, n); });
+  return std::ranges::none_of(neighbours_, [&](const Neighbour& q) { return keeps_waiting(q, n); }) &&
+         std::ranges::none_of(leavers_, [&](const Leaver& q) { return keeps_waiting(q, n); });
 }
 
 std::vector<RegionId> Intake::missing(Step n) const {
   std::vector<RegionId> regions;
   for (const Neighbour& neighbour : neighbours_) {
     if (keeps_waiting(neighbour, n)) regions.push_back(neighbour.id());
+  }
+  for (const Leaver& leaver : leavers_) {
+    if (keeps_waiting(leaver, n)) regions.push_back(leaver.neighbour.id());
   }
   return regions;
 }
@@ -222,7 +265,9 @@ std::vector<RegionId> Intake::missing(Step n) const {
 Step Intake::effect_limit(Step n) const { return settings_.sync == SyncMode::kDeterministic ? needed_for(n) : n - 1; }
 
 std::vector<Adoption> Intake::receive(Step n, ViolationLog& violations, Joining joining) {
+  forget_leavers();
   const Step limit = effect_limit(n);
+  for (Leaver& leaver : leavers_) leaver.neighbour.apply_until(limit);
   for (Neighbour& neighbour : neighbours_) {
     if (!neighbour.alive()) continue;
     neighbour.apply_until(limit);
@@ -280,7 +325,12 @@ std::vector<Order> Intake::take_orders(const Inbox& inbox) {
 std::vector<Alarm> Intake::take_alarms() { return take_from(neighbours_, &Neighbour::take_alarms); }
 
 std::vector<Neighbour::Introduced> Intake::take_introductions() {
-  return take_from(neighbours_, &Neighbour::take_introductions);
+  std::vector<Neighbour::Introduced> all = take_from(neighbours_, &Neighbour::take_introductions);
+  for (Leaver& leaver : leavers_) {
+    const std::vector<Neighbour::Introduced> last = leaver.neighbour.take_introductions();
+    all.insert(all.end(), last.begin(), last.end());
+  }
+  return all;
 }
 
 std::vector<HandOffMark> Intake::adopted() const {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/handoff.h"
@@ -92,19 +93,34 @@ class Intake {
   std::vector<Neighbour::Introduced> take_introductions();
   /// Makes `region` a neighbour, which publishes from its state `begin` on.
   void listen_to(RegionId region, Step begin);
+  /// Region `region` is no neighbour any more: it publishes nothing from its state `end` on. What it has published
+  /// before still takes effect, but for its auras.
+  void leave(RegionId region, Step end);
+  /// Regions that have left, and from which nothing is to come any more, since the last call.
+  std::vector<RegionId> take_left() { return std::exchange(left_, {}); }
+  /// False for a neighbour that is marked dead.
+  bool is_alive(RegionId region) const;
 
   /// The hand-offs that have been adopted, for the next batch.
   std::vector<HandOffMark> adopted() const;
 
  private:
+  /// A former neighbour of which not everything has taken effect.
+  struct Leaver {
+    Neighbour neighbour;
+    Step end;  ///< the first state that it does not publish
+  };
   Neighbour* find(RegionId id);
   const Neighbour* find(RegionId id) const;
+  Neighbour* speaker(RegionId id, Step stamp);
+  void forget_leavers();
   bool keeps_waiting(const Neighbour& neighbour, Step n) const;
+  bool keeps_waiting(const Leaver& leaver, Step n) const;
   bool has_all(const Neighbour& neighbour, Step until) const;
   template <class Message>
   bool belongs(const Message& message, std::uint64_t map_version);
   template <class Message>
-  bool is_early(const Message& message) const;
+  bool is_early(const Message& message);
   void forget_early(Step before);
   void accept(HandOff& hand_off);
   void note_adopted(const AuraBatch& batch);
@@ -120,6 +136,8 @@ class Intake {
   const Vicinity& vicinity_;
   std::uint64_t map_version_;
   std::vector<Neighbour> neighbours_;
+  std::vector<Leaver> leavers_;
+  std::vector<RegionId> left_;
   Neighbour::Arrived arrived_;
   Inbox early_;  ///< messages of regions that we do not listen to yet
   DepartureLedger& departures_;

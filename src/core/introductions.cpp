@@ -8,35 +8,32 @@
 namespace aurasim::core {
 namespace {
 
-/// Regions within this distance of a body have to know of it by the time that an introduction takes effect. Where
-/// states are checked, bodies are believed to keep to their paths (InterestMatching::zone_of), and what falls comes no
-/// nearer to another region.
+/// Where states are checked, bodies are believed to keep to their paths (InterestMatching::zone_of).
+bool keep_to_paths(const Aura& aura) { return aura.rules().redo && aura.predicts(); }
+
+/// Regions within this distance of a body have to know of it by the time that an introduction takes effect. What keeps
+/// to its path and falls comes no nearer to another region.
 double reach_m(const Aura& aura, const Path& path, double others_top_speed_m_s) {
   const AuraRules& rules = aura.rules();
   const double steps = path.age_steps + static_cast<double>(horizon::introduction(rules.lookahead));
   const double speed = std::max(path.speed_m_s, path.v_WB.norm());
-  const bool keeps_to_path = rules.redo && aura.predicts();
-  const double along = keeps_to_path ? std::hypot(path.v_WB.x(), path.v_WB.y()) : path.v_WB.norm();
+  const double along = keep_to_paths(aura) ? std::hypot(path.v_WB.x(), path.v_WB.y()) : path.v_WB.norm();
   const double drift = along + rules.uncertainty * path.speed_m_s;
-  const double zone_speed = keeps_to_path ? drift / (1 + rules.uncertainty) : speed;
+  const double zone_speed = keep_to_paths(aura) ? drift / (1 + rules.uncertainty) : speed;
   return path.radius_m +
          aura.zone(zone_speed, horizon::kMostHops, std::max(others_top_speed_m_s, speed), path.radius_m) +
          steps * rules.step_s * drift;
 }
 
-/// Adds what a body of `host` at `p` may reach, if it may come to `territory`. One that is over it already may come to
-/// all of it, however slow it is: a blow that nobody expects may make it faster.
-void add_to(std::vector<HostsReach>& reaches, const Rectangle& territory, RegionId host, const Vec3& p,
+/// Adds what a body of `host` at `p` may reach, if it may come to `territory`. Where bodies are not believed to keep to
+/// their paths, one that is over it already may come to all of it, however slow it is: a blow that nobody expects may
+/// make it faster.
+void add_to(HostsReaches& reaches, const Aura& aura, const Rectangle& territory, RegionId host, const Vec3& p,
             double reach_m) {
   if (territory.distance(p.x(), p.y()) > reach_m) return;
-  Rectangle reach{p.x() - reach_m, p.y() - reach_m, p.x() + reach_m, p.y() + reach_m};
-  if (territory.contains(p.x(), p.y())) reach = hull_of(reach, territory);
-  const auto known = std::ranges::find(reaches, host, &HostsReach::host);
-  if (known == reaches.end()) {
-    reaches.push_back({host, reach});
-  } else {
-    known->reach = hull_of(known->reach, reach);
-  }
+  const Rectangle reach{p.x() - reach_m, p.y() - reach_m, p.x() + reach_m, p.y() + reach_m};
+  const bool goes_anywhere = !keep_to_paths(aura) && territory.contains(p.x(), p.y());
+  reaches.add(host, goes_anywhere ? hull_of(reach, territory) : reach);
 }
 
 void sort_out(std::vector<Introduction>& pairs) {
@@ -56,13 +53,49 @@ bool every_region_is_near(const Vicinity& vicinity) {
 
 }  // namespace
 
+void HostsReaches::group_by_host() {
+  std::ranges::stable_sort(bodies_, {}, &Reach::host);
+  hosts_.clear();
+  for (auto first = bodies_.begin(); first != bodies_.end();) {
+    Host host{first->host, first->reach, {}};
+    auto end = first;
+    for (; end != bodies_.end() && end->host == host.id; ++end) host.reach = hull_of(host.reach, end->reach);
+    host.bodies = {first, end};
+    hosts_.push_back(host);
+    first = end;
+  }
+}
+
+bool HostsReaches::may_meet(const Host& one, const Host& other) {
+  if (one.reach.distance(other.reach) > 0) return false;
+  return std::ranges::any_of(one.bodies, [&](const Reach& a) {
+    return a.reach.distance(other.reach) <= 0 &&
+           std::ranges::any_of(other.bodies, [&](const Reach& b) { return a.reach.distance(b.reach) <= 0; });
+  });
+}
+
+template <class IsWanted, class Visit>
+void HostsReaches::for_each_meeting(IsWanted&& is_wanted, Visit&& visit) {
+  group_by_host();
+  for (std::size_t i = 0; i < hosts_.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const RegionId a = hosts_[j].id, b = hosts_[i].id;
+      if (is_wanted(a, b) && may_meet(hosts_[j], hosts_[i])) visit(a, b);
+    }
+  }
+}
+
 Introducer::Introducer(const Aura& aura, const Vicinity& vicinity)
     : aura_(aura), vicinity_(vicinity), all_are_near_(every_region_is_near(vicinity)) {}
 
+/// False if they listen to each other in any case, or if one of the two does not listen to us.
+bool Introducer::may_introduce(RegionId a, RegionId b) const {
+  const auto hears = [this](RegionId region) { return region == vicinity_.self || vicinity_.is_neighbour(region); };
+  return a != b && !vicinity_.are_near(a, b) && hears(a) && hears(b);
+}
+
 void Introducer::introduce(RegionId a, RegionId b) {
-  if (a == b || vicinity_.are_near(a, b)) return;
-  if (!vicinity_.is_neighbour(a) || !vicinity_.is_neighbour(b)) return;  // one of the two does not listen to us
-  found_.push_back({std::min(a, b), std::max(a, b)});
+  if (may_introduce(a, b)) found_.push_back({std::min(a, b), std::max(a, b)});
 }
 
 const std::vector<Introduction>& Introducer::look(const ForeignBodies& foreign, double others_top_speed_m_s) {
@@ -74,17 +107,15 @@ const std::vector<Introduction>& Introducer::look(const ForeignBodies& foreign, 
     const Vec3& p = body.path.pose.p_WB;
     const bool at_home = vicinity_.map.region(body.host).contains(p.x(), p.y());
     const double reach = reach_m(aura_, body.path, others_top_speed_m_s);
-    add_to(guests_, vicinity_.home(), body.host, p, reach);
+    add_to(guests_, aura_, vicinity_.home(), body.host, p, reach);
     if (at_home && reach <= vicinity_.neighbour_distance_m) continue;
     for (std::uint32_t q = 0; q < vicinity_.map.size(); ++q) {
       if (vicinity_.map.distance(RegionId{q}, p) <= reach) introduce(body.host, RegionId{q});
     }
   }
-  for (std::size_t i = 0; i < guests_.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      if (guests_[i].reach.distance(guests_[j].reach) <= 0) introduce(guests_[i].host, guests_[j].host);
-    }
-  }
+  guests_.for_each_meeting([this](RegionId a, RegionId b) { return may_introduce(a, b); },
+                           [this](RegionId a, RegionId b) { introduce(a, b); });
+  guests_.for_each([this](RegionId host) { introduce(host, vicinity_.self); });
   sort_out(found_);
   return found_;
 }
@@ -98,22 +129,20 @@ std::vector<RegionId> related_at_start(const Aura& aura, const RegionMap& map, d
     paths.back().speed_m_s = aura.speed_of(scene.bodies[i]);
     top_speed_m_s = std::max(top_speed_m_s, paths.back().speed_m_s);
   }
-  std::vector<std::vector<HostsReach>> near(map.size());  // by region: who may come to it, its owner first
-  for (std::uint32_t q = 0; q < map.size(); ++q) near[q].push_back({RegionId{q}, map.region(RegionId{q})});
-  for (std::size_t i = 0; i < hosts.size(); ++i) {
-    const double reach = reach_m(aura, paths[i], top_speed_m_s);
-    for (std::uint32_t q = 0; q < map.size(); ++q) {
-      add_to(near[q], map.region(RegionId{q}), hosts[i], paths[i].pose.p_WB, reach);
-    }
-  }
+  std::vector<double> reaches;
+  for (const Path& path : paths) reaches.push_back(reach_m(aura, path, top_speed_m_s));
   std::vector<RegionId> related;
-  for (const std::vector<HostsReach>& there : near) {
-    const auto own = std::ranges::find(there, self, &HostsReach::host);
-    if (own == there.end()) continue;
-    for (const HostsReach& other : there) {
-      const bool is_near = map.region(self).distance(map.region(other.host)) <= neighbour_distance_m;
-      if (!is_near && own->reach.distance(other.reach) <= 0) related.push_back(other.host);
+  HostsReaches there;
+  for (std::uint32_t q = 0; q < map.size(); ++q) {
+    there.clear();
+    there.add(RegionId{q}, map.region(RegionId{q}));
+    for (std::size_t i = 0; i < hosts.size(); ++i) {
+      add_to(there, aura, map.region(RegionId{q}), hosts[i], paths[i].pose.p_WB, reaches[i]);
     }
+    const auto is_wanted = [&](RegionId a, RegionId b) {
+      return (a == self || b == self) && map.region(a).distance(map.region(b)) > neighbour_distance_m;
+    };
+    there.for_each_meeting(is_wanted, [&](RegionId a, RegionId b) { related.push_back(a == self ? b : a); });
   }
   std::sort(related.begin(), related.end());
   related.erase(std::unique(related.begin(), related.end()), related.end());

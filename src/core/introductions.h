@@ -1,7 +1,8 @@
 // Listening follows bodies (docs/design.md, "Who listens to whom"). Regions near each other always listen to each
 // other. Where a body may come to a region that does not listen to its host, a node that listens to both introduces the
 // two. A node also introduces two hosts whose bodies may come together in its territory. Both listen to each other from
-// an agreed state on.
+// an agreed state on, and as long as anybody introduces them. So a node also introduces itself to hosts that it listens
+// to.
 #pragma once
 
 #include <span>
@@ -15,10 +16,35 @@
 
 namespace aurasim::core {
 
-/// Where those of a host's bodies that are near some region may come to before an introduction takes effect.
-struct HostsReach {
-  RegionId host{};
-  Rectangle reach;
+/// Where bodies of several hosts may come to before an introduction takes effect: a rectangle for each body.
+class HostsReaches {
+ public:
+  void clear() { bodies_.clear(); }
+  void add(RegionId host, const Rectangle& reach) { bodies_.push_back({host, reach}); }
+  /// Calls visit(host) for the host of each body.
+  template <class Visit>
+  void for_each(Visit&& visit) const {
+    for (const Reach& body : bodies_) visit(body.host);
+  }
+  /// Calls visit(a, b), a < b, for each two hosts of which bodies may come together, if is_wanted(a, b).
+  template <class IsWanted, class Visit>
+  void for_each_meeting(IsWanted&& is_wanted, Visit&& visit);
+
+ private:
+  struct Reach {
+    RegionId host{};
+    Rectangle reach;
+  };
+  struct Host {
+    RegionId id{};
+    Rectangle reach;  ///< holds those of all of its bodies
+    std::span<const Reach> bodies;
+  };
+  void group_by_host();
+  static bool may_meet(const Host& one, const Host& other);
+
+  std::vector<Reach> bodies_;
+  std::vector<Host> hosts_;  ///< made by group_by_host()
 };
 
 class Introducer {
@@ -26,17 +52,18 @@ class Introducer {
   /// Keeps references to `aura` and `vicinity`.
   Introducer(const Aura& aura, const Vicinity& vicinity);
 
-  /// Introductions that the foreign bodies call for, between hosts that we listen to; ascending. Valid until the next
-  /// call.
+  /// Introductions that the foreign bodies call for, between our region and those that we listen to; ascending. Valid
+  /// until the next call.
   const std::vector<Introduction>& look(const ForeignBodies& foreign, double others_top_speed_m_s);
 
  private:
+  bool may_introduce(RegionId a, RegionId b) const;
   void introduce(RegionId a, RegionId b);
 
   const Aura& aura_;
   const Vicinity& vicinity_;
-  bool all_are_near_;               ///< every region is near every other, so none has to be introduced
-  std::vector<HostsReach> guests_;  ///< hosts of bodies near our territory
+  bool all_are_near_;    ///< every region is near every other, so none has to be introduced
+  HostsReaches guests_;  ///< of bodies near our territory
   std::vector<Introduction> found_;
 };
 

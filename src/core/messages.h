@@ -131,6 +131,7 @@ struct Inbox {
 struct Outbox {
   std::vector<RegionId> listeners;  ///< regions to which the batch goes, ascending
   std::vector<RegionId> expected;   ///< regions that will soon be listeners
+  std::vector<RegionId> left;       ///< regions that were listeners, and from which nothing is to come any more
   AuraBatch aura;
   std::vector<HandOff> hand_offs;
 

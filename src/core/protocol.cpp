@@ -31,7 +31,8 @@ Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const
       projection_(*aura_, vicinity_),
       orders_(settings.last_order),
       hops_across_(hops_across(map, settings.neighbour_distance_m)),
-      listening_(vicinity_, intake_, settings.aura.lookahead, settings.start, settings.related),
+      listening_(vicinity_, intake_, settings.aura.lookahead, settings.start, settings.related,
+                 settings.sync != SyncMode::kFreeRunning),
       introducer_(*aura_, vicinity_),
       gathers_(settings.redo > 0),
       check_(*aura_, vicinity_, settings.start),
@@ -54,7 +55,12 @@ Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const
 
 Continuation Protocol::continuation(const Order& redo) const {
   const Step now = outbox_.aura.stamp;
-  Continuation next{orders_, alarms_, violations_, counters_, intake_.dead_regions(), listening_.agreed(redo.at_step)};
+  Continuation next{orders_,
+                    alarms_,
+                    violations_,
+                    counters_,
+                    intake_.dead_regions(),
+                    listening_.agreed(redo.at_step, std::get<Redo>(redo.action).cut)};
   next.orders.put_back(now, round());
   next.alarms.put_back(std::get<Redo>(redo.action).cut);
   return next;
@@ -76,10 +82,11 @@ const Changes& Protocol::receive(Step n, Joining joining) {
   for (Adoption& adoption : arrived) take_if_newer(adoption);
   receive_violations();
   if (settings_.sync != SyncMode::kFreeRunning) {  // in free-running mode regions agree on no state
-    const std::vector<Neighbour::Introduced> introduced = intake_.take_introductions();
+    std::vector<Neighbour::Introduced> introduced = intake_.take_introductions();
+    for (const Introduction& own : outbox_.aura.introductions) introduced.push_back({n - 1, own, vicinity_.self});
     listening_.receive(introduced);
     for (const Neighbour::Introduced& one : introduced) {
-      if (one.stamp == n - 1) changes_.introductions.push_back(one.pair);
+      if (one.stamp == n - 1 && one.by != vicinity_.self) changes_.introductions.push_back(one.pair);
     }
   }
   changes_.orders = orders_.take_news();
@@ -197,6 +204,7 @@ void Protocol::fill_header() {
   batch.introductions = introducer_.look(matching_.all_foreign(), matching_.others_top_speed());
   outbox_.listeners = vicinity_.neighbours;
   outbox_.expected = listening_.expected();
+  outbox_.left = intake_.take_left();
 }
 
 void Protocol::check(const Snapshot& snapshot) {

@@ -138,7 +138,11 @@ RegionId Protocol::lowest_owner(std::uint32_t i) const {
   return lowest;
 }
 
+/// Nothing goes to a region that may have ceased to listen before it has said that the cluster has arrived. The pair is
+/// seen again in the next state, and its territory's owner introduces the two anew. Where they touch first, states are
+/// computed again.
 void Protocol::depart(std::uint32_t i, RegionId destination, HandOffReason reason, const Snapshot& snapshot) {
+  if (!listening_.stays(destination, snapshot.step)) return;
   Departure& departure = departing_.emplace_back();
   departure.destination = destination;
   departure.reason = reason;

@@ -19,6 +19,8 @@ struct Vicinity {
 
   /// Makes region `id` a neighbour.
   void listen_to(RegionId id);
+  /// Region `id` is no neighbour any more.
+  void leave(RegionId id) { std::erase(neighbours, id); }
 
   const Rectangle& home() const { return map.region(self); }
   /// The neighbours whose territory is at most `distance_m` from `p`.

@@ -346,6 +346,7 @@ void DdsTransport::take(core::Inbox& inbox) {
 
 void DdsTransport::send(const core::Outbox& outbox) {
   impl_->participant.progress();
+  for (const RegionId region : outbox.left) impl_->links.remove(region);
   impl_->links.add(outbox.expected);
   impl_->wait_for(outbox.listeners);
   impl_->make_writers_for(outbox);

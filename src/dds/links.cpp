@@ -1,6 +1,7 @@
 #include "dds/links.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace aurasim::dds {
 
@@ -15,25 +16,37 @@ Links::Links(Domain& domain, RegionId self, core::Generation life, const std::ve
   add(regions, true);
 }
 
-/// Regions that come later have another reader of auras: to change the partitions of one that is matched would announce
-/// it to everybody anew.
+/// Regions that come later have readers of their own: to change the partitions of one that is matched would announce it
+/// to everybody anew, and so would one that goes.
 void Links::add(const std::vector<RegionId>& regions, bool are_first) {
-  EndpointSpec batches{TopicId::kAura, {}, self_};
   std::vector<RegionId> missing;
+  std::ranges::copy_if(regions, std::back_inserter(missing), [this](RegionId region) { return !find(region); });
+  if (are_first) return add_reader(missing, true);
+  for (const RegionId region : missing) add_reader({region}, false);
+}
+
+void Links::add_reader(const std::vector<RegionId>& regions, bool are_first) {
+  if (regions.empty()) return;
+  EndpointSpec batches{TopicId::kAura, {}, self_};
   for (const RegionId region : regions) {
-    if (find(region) != nullptr) continue;
-    missing.push_back(region);
     batches.partitions.push_back(topics::partition_of(TopicId::kAura, {.source = region, .life = life_}));
   }
-  if (missing.empty()) return;
   const Reader& auras = *aura_readers_.emplace_back(std::make_unique<Reader>(domain_, batches, domain_.wakeup()));
-  for (const RegionId region : missing) {
+  for (const RegionId region : regions) {
     Link& link = *links_.emplace_back(std::make_unique<Link>());
     link.region = region;
     link.auras = &auras;
     link.is_first = are_first;
     if (are_first) migrations_to(link);
   }
+}
+
+void Links::remove(RegionId region) {
+  const auto link = std::ranges::find(links_, region, [](const auto& one) { return one->region; });
+  if (link == links_.end() || (*link)->is_first) return;
+  const Reader* const auras = (*link)->auras;
+  links_.erase(link);
+  std::erase_if(aura_readers_, [auras](const auto& reader) { return reader.get() == auras; });
 }
 
 Writer& Links::migrations_to(Link& link) {

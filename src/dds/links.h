@@ -1,6 +1,7 @@
 // The endpoints by which a region exchanges messages with others (topics aura and migration). Everybody
 // discovers every endpoint of everybody, so a region has one reader for each topic, whatever the number of regions that
-// it hears. Only what is for one receiver has a writer of its own for each.
+// are near it. Only what is for one receiver has a writer of its own for each, and regions that come and go have a
+// reader each.
 #pragma once
 
 #include <cstddef>
@@ -40,6 +41,8 @@ class Links {
   Link* find(core::RegionId region);
   /// Makes the links that are missing, if bodies need regions that were none of the first ones.
   void add(const std::vector<core::RegionId>& regions) { add(regions, false); }
+  /// Removes the link to a region that was none of the first ones, with its endpoints.
+  void remove(core::RegionId region);
   /// The writer of hand-offs to the link's region. Makes it if need be: then it has yet to be matched.
   Writer& migrations_to(Link& link);
   const std::vector<std::unique_ptr<Link>>& all() const { return links_; }
@@ -60,12 +63,13 @@ class Links {
   std::vector<std::string> unmatched(const Link& link) const;
 
   Writer& auras() { return aura_writer_; }
-  /// Readers of auras: one for the first regions, and one for those of each later add().
+  /// Readers of auras: one for the first regions, and one for each later one.
   const std::vector<std::unique_ptr<Reader>>& aura_readers() const { return aura_readers_; }
   Reader& migrations() { return migration_reader_; }
 
  private:
   void add(const std::vector<core::RegionId>& regions, bool are_first);
+  void add_reader(const std::vector<core::RegionId>& regions, bool are_first);
 
   Domain& domain_;
   core::RegionId self_;

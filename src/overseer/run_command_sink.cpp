@@ -18,6 +18,8 @@ using steering::BadAsk;
 constexpr auto kPatienceForEffect = 10s;
 constexpr auto kPatienceForSuccessor = 60s;
 constexpr auto kPatienceForListeners = 3s;
+/// A step may be asked for while the run still computes states before its pause.
+constexpr core::Step kStatesOfASecond = 60;
 
 nlohmann::json list(const core::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -85,7 +87,7 @@ void RunCommandSink::refuse(const Request& request, std::string why) {
 
 void RunCommandSink::steer(const Request& request, const steering::Steer& steer) {
   if (!steering_.is_there()) return refuse(request, "no node of this run is there");
-  if (steer.kind == messages::RunCommandKind::kStep && !steering_.is_paused()) {
+  if (steer.kind == messages::RunCommandKind::kStep && !steering_.is_paused_within(kStatesOfASecond)) {
     return refuse(request, "steps are for a run that is paused");
   }
   try {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -42,7 +43,7 @@ struct PrefixHash {
 struct WireGuid {
   GuidPrefix prefix{};
   std::uint32_t entity = 0;  ///< entity id: its four octets, the first one in the highest bits
-  bool operator==(const WireGuid&) const = default;
+  auto operator<=>(const WireGuid&) const = default;
 };
 
 /// Claim of a submessage that can only be judged from earlier datagrams.

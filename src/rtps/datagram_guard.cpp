@@ -110,7 +110,7 @@ bool DatagramGuard::is_of_shunned(const Findings& findings, const GuidPrefix& se
 void DatagramGuard::answer_requests(Findings& findings, Source source, Time now) {
   for (const Request& request : findings.requests) {
     if (own_ && request.destination != GuidPrefix{} && request.destination != *own_) continue;
-    if (request.wanted > 0) heartbeats_.note_loss(request.writer, now);
+    heartbeats_.note_request(request, now);
     const Repeats::Answer answer = repeats_.judge(request, now);
     if (answer == Repeats::Answer::kPass) continue;
     if (request.wanted > 0) refuse(Refusal::kRepeat, source);

@@ -21,13 +21,19 @@ void HeartbeatLimit::note_sent(std::uint32_t writer, std::uint64_t number, Time 
   const auto found = writers_.find(writer);
   if (found == writers_.end() || number <= found->second.last) return;
   Steady& steady = found->second;
-  steady.apart = now - std::exchange(steady.at, now);
+  const Time before = std::exchange(steady.at, now);
+  const Time apart = steady.last == 0 ? Time{0} : std::min(now - before, kLongestSilence / 2);
+  steady.apart = std::max(apart, steady.apart - steady.apart / 8);
   steady.last = number;
 }
 
-void HeartbeatLimit::note_loss(std::uint32_t writer, Time now) {
-  const auto found = writers_.find(writer);
-  if (found != writers_.end()) found->second.lossy_until = now + kAfterLoss;
+void HeartbeatLimit::note_request(const Request& request, Time now) {
+  const auto found = writers_.find(request.writer);
+  if (found == writers_.end()) return;
+  Steady& steady = found->second;
+  if (steady.first_answers.size() >= kMostReaders) steady.first_answers.clear();
+  const Time first = steady.first_answers.try_emplace(request.reader, now).first->second;
+  if (request.wanted > 0 && now - first >= kNew) steady.lossy_until = now + kAfterLoss;
 }
 
 bool HeartbeatLimit::allows(const Heartbeat& heartbeat, const Peer& peer, Time now) {
@@ -35,12 +41,15 @@ bool HeartbeatLimit::allows(const Heartbeat& heartbeat, const Peer& peer, Time n
   if (found == writers_.end()) return true;
   Steady& steady = found->second;
   if (steady.asked.size() >= kMostReaders) steady.asked.clear();
-  const auto [asked, is_first] = steady.asked.try_emplace({peer, heartbeat.reader}, steady.last);
+  const auto [place, is_first] = steady.asked.try_emplace({peer, heartbeat.reader});
+  Asked& asked = place->second;
   const Time silence = std::clamp(2 * steady.apart, kSilence, kLongestSilence);
+  const bool is_repeat = asked.last == steady.last;
+  const Time pause = is_repeat ? std::min(silence * (1 << asked.repeats), kLongestPause) : silence;
+  const bool is_silent = now - (is_repeat ? asked.at : steady.at) > pause;
   const bool is_lossy = steady.lossy_until && now < *steady.lossy_until;
-  const bool is_needed =
-      is_first || is_lossy || now - steady.at > silence || steady.last - asked->second >= kMostUnasked;
-  if (is_needed) asked->second = steady.last;
+  const bool is_needed = is_first || is_lossy || is_silent || steady.last - asked.last >= kMostUnasked;
+  if (is_needed) asked = {steady.last, now, is_repeat ? std::min(asked.repeats + 1, 8) : 0};
   return is_needed;
 }
 

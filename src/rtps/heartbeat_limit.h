@@ -12,6 +12,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "rtps/datagram_findings.h"
 #include "rtps/peer.h"
 
 namespace aurasim::rtps {
@@ -35,27 +36,38 @@ class HeartbeatLimit {
 
   /// Takes note of a sample that is being sent, be it for the first time or not.
   void note_sent(std::uint32_t writer, std::uint64_t number, Time now);
-  /// Takes note that a reader asks for samples of `writer` that it lacks.
-  void note_loss(std::uint32_t writer, Time now);
+  /// Takes note of what a reader has said that it has and lacks.
+  void note_request(const Request& request, Time now);
   /// True if the heartbeat is to be sent to `peer`; it then counts as sent. Heartbeats of other writers always are.
   bool allows(const Heartbeat& heartbeat, const Peer& peer, Time now);
 
   /// A heartbeat is sent after so many samples at the latest, because writers keep what is not acknowledged.
   static constexpr std::uint64_t kMostUnasked = 8;
-  /// A writer has fallen silent when its last sample is older than this, and than twice the time between its last two.
+  /// A writer has fallen silent when its last sample is older than this, and than twice the longest time between two of
+  /// late. On a busy host states come irregularly.
   static constexpr Time kSilence = std::chrono::milliseconds(5), kLongestSilence = std::chrono::milliseconds(200);
+  /// A silent writer asks again after twice as long each time, up to this: who does not answer has no processor now.
+  static constexpr Time kLongestPause = std::chrono::milliseconds(500);
+  /// What a reader lacks so soon after its first answer was sent before it knew the writer, and is no loss.
+  static constexpr Time kNew = std::chrono::seconds(2);
   /// After a loss all heartbeats are sent for so long: where one sample was lost, others will be.
   static constexpr Time kAfterLoss = std::chrono::seconds(10);
   static constexpr std::size_t kMostReaders = 4096;
 
  private:
+  /// The last heartbeat to a reader.
+  struct Asked {
+    std::uint64_t last = 0;  ///< the newest sample then
+    Time at{0};
+    int repeats = 0;  ///< how often it was asked for the same sample before
+  };
   struct Steady {
     std::uint64_t last = 0;  ///< number of the newest sample
     Time at{0};              ///< when that was sent first
-    Time apart{0};           ///< time between the last two
+    Time apart{0};           ///< longest time between two of late
     std::optional<Time> lossy_until;
-    std::map<std::pair<Peer, std::uint32_t>, std::uint64_t>
-        asked;  ///< by peer and reader: `last` at the last heartbeat
+    std::map<std::pair<Peer, std::uint32_t>, Asked> asked;  ///< by peer and reader
+    std::map<WireGuid, Time> first_answers;                 ///< by reader
   };
   std::unordered_map<std::uint32_t, Steady> writers_;
 };

@@ -58,6 +58,26 @@ TEST_P(Listening, IsMutualFromTheSameStateOn) {
   EXPECT_TRUE(narrow_columns || introduced > 0);
 }
 
+/// Bodies come to rest, so most regions that they have brought together have nothing to say to each other any more.
+TEST_P(Listening, EndsWhereNothingMovesAndNothingIsMissed) {
+  constexpr core::Step kUntilRest = 700;
+  const core::Scene scene = thrown_bodies(40, 16, 12, 12, static_cast<std::uint64_t>(GetParam()));
+  ClusterOptions options = listening_options_for(GetParam());
+  options.map = core::RegionMap::grid(3, 4, 4, 4);
+  options.aura.lookahead = 2;
+  CheckedRun apart(scene, options);
+  std::ptrdiff_t in_flight = 0, at_rest = 0;
+  apart.on_state = [&](const node::Node& node, const node::StepReport& report, double) {
+    if (report.step != kListeningSteps && report.step != kUntilRest) return;
+    (report.step == kListeningSteps ? in_flight : at_rest) += std::ranges::count_if(
+        node.protocol().listens_to(), [](const core::Listened& other) { return other.introduced_by.has_value(); });
+  };
+  const Outcome outcome = apart.run(kUntilRest);
+  EXPECT_LT(at_rest, in_flight);
+  EXPECT_EQ(outcome.hash, run_central(scene, options, kUntilRest).hash) << outcome.redos << " redos";
+  EXPECT_EQ(outcome.lost, 0u);
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, Listening, testing::Range(1, 1 + seeds_or(6)));
 
 }  // namespace

@@ -12,6 +12,7 @@
 namespace aurasim::core::testing {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
@@ -74,6 +75,13 @@ TEST_F(TheOwnerOfAPlace, LeavesTwoHostsAloneWhoseBodiesAreBesideIt) {
   add(RegionId{0}, -10.2, 0);
   add(RegionId{2}, 0.2, 0);
   EXPECT_THAT(look(), IsEmpty());
+}
+
+/// Both listen to each other only as long as somebody introduces them.
+TEST_F(TheOwnerOfAPlace, IntroducesItselfToTheHostOfAGuest) {
+  vicinity_.listen_to(RegionId{3});
+  add(RegionId{3}, -3, 0);
+  EXPECT_THAT(look(), Contains(Introduction{RegionId{1}, RegionId{3}}));
 }
 
 /// Where states are checked a body is believed to fall straight.

@@ -59,6 +59,14 @@ class AHeartbeatLimit : public ::testing::Test {
     return limit_.allows({writer, reader}, {1, {127, 0, 0, 1}, port}, now_);
   }
 
+  /// A reader says that it lacks so many samples.
+  void answers(std::uint32_t lacks) {
+    Request request;
+    request.writer = kWriter;
+    request.wanted = lacks;
+    limit_.note_request(request, now_);
+  }
+
   HeartbeatLimit limit_;
   std::uint64_t last_ = 0;
   HeartbeatLimit::Time now_{1h};
@@ -89,7 +97,9 @@ TEST_F(AHeartbeatLimit, AsksAfterSomeSamplesBecauseTheyAreKept) {
 }
 
 TEST_F(AHeartbeatLimit, AsksForSomeTimeAfterALoss) {
-  limit_.note_loss(kWriter, now_);
+  answers(0);
+  now_ += HeartbeatLimit::kNew;
+  answers(1);
   for (int i = 0; i < 400; ++i) {
     write();
     ASSERT_TRUE(asks());
@@ -97,6 +107,46 @@ TEST_F(AHeartbeatLimit, AsksForSomeTimeAfterALoss) {
   for (int i = 0; i < 100; ++i) write();
   EXPECT_TRUE(asks());
   EXPECT_FALSE(asks());
+}
+
+/// A reader that comes asks for what was sent while it did not know the writer.
+TEST_F(AHeartbeatLimit, TakesNothingForALossThatANewReaderLacks) {
+  answers(3);
+  const auto old = now_ + HeartbeatLimit::kNew;
+  for (; now_ + 40ms < old; write()) asks();
+  answers(1);
+  write();
+  EXPECT_FALSE(asks());
+  now_ += 40ms;
+  answers(1);
+  write();
+  EXPECT_TRUE(asks()) << "now it is a loss";
+}
+
+/// Who does not answer has no processor now, and many heartbeats would only take it from others.
+TEST_F(AHeartbeatLimit, AsksASilentReaderLessAndLessOften) {
+  int asked = 0;
+  const auto end = now_ + 10s;
+  for (auto longest = HeartbeatLimit::Time{0}, last = now_; now_ < end; now_ += 1ms) {
+    if (!asks()) continue;
+    ++asked;
+    longest = now_ - std::exchange(last, now_);
+    ASSERT_LE(longest, HeartbeatLimit::kLongestPause + 1ms);
+  }
+  EXPECT_GE(asked, 20) << "it goes on for ever";
+  EXPECT_LE(asked, 25);
+}
+
+TEST_F(AHeartbeatLimit, WaitsAsLongAsStatesMayTakeOfLate) {
+  now_ += 60ms;
+  limit_.note_sent(kWriter, ++last_, now_);
+  for (int i = 0; i < 2; ++i) write();
+  now_ += 80ms;
+  EXPECT_FALSE(asks());
+  for (int i = 0; i < 20; ++i) write();
+  asks();
+  now_ += 80ms;
+  EXPECT_TRUE(asks());
 }
 
 /// A sample that is sent again says nothing about how fast the writer writes.
@@ -114,8 +164,9 @@ TEST_F(AHeartbeatLimit, WaitsNeitherForAFastWriterLongNorForASlowOne) {
   limit_.note_sent(kWriter, ++last_, now_);
   now_ += HeartbeatLimit::kLongestSilence + 1ms;
   EXPECT_TRUE(asks());
-  limit_.note_sent(kWriter, ++last_, now_);
-  limit_.note_sent(kWriter, ++last_, now_);
+  for (int i = 0; i < 50; ++i) limit_.note_sent(kWriter, ++last_, now_ += 1ms);
+  EXPECT_TRUE(asks()) << "many samples";
+  limit_.note_sent(kWriter, ++last_, now_ += 1ms);
   now_ += HeartbeatLimit::kSilence;
   EXPECT_FALSE(asks());
   now_ += 1ms;
@@ -141,6 +192,10 @@ TEST_F(AGuardOfASteadyWriter, LearnsOfLossesFromWhatReadersAskFor) {
     guard_.allows(heartbeat, peer, now_);
   }
   EXPECT_TRUE(passes(ack_nack(3, 0)));
+  EXPECT_FALSE(guard_.allows(heartbeat, peer, now_));
+  now_ += HeartbeatLimit::kNew;
+  guard_.note_sent(datagram({data(kWriter, 3, Bytes(8))}), now_);
+  guard_.allows(heartbeat, peer, now_);
   EXPECT_FALSE(guard_.allows(heartbeat, peer, now_));
   EXPECT_TRUE(passes(ack_nack(2, 1)));
   EXPECT_TRUE(guard_.allows(heartbeat, peer, now_));

@@ -187,6 +187,48 @@ TEST(ALaterRegion, GetsItsFirstHandOffAndAnswers) {
   EXPECT_EQ(b.transport.counters().migration.received, 0U) << "what is for one receiver goes to no other";
 }
 
+/// A batch goes to nobody who has left, so it costs nothing there.
+TEST(ALaterRegion, HearsNothingAfterItHasLeftAndAllWhenItComesBack) {
+  Peer a(own_domain(), 0, {1});
+  Peer b(own_domain(), 1, {0});
+  Peer far(own_domain(), 2, {});
+  match({&a, &b});
+  core::Step stamp = 0;
+  struct Who {
+    std::vector<RegionId> listeners = {}, expected = {}, left = {};
+  };
+  const auto send = [&stamp](Peer& from, const Who& who) {
+    core::Outbox outbox;
+    outbox.listeners = who.listeners;
+    outbox.expected = who.expected;
+    outbox.left = who.left;
+    outbox.aura = batch_of(0, from.region());
+    outbox.aura.stamp = ++stamp;
+    from.transport.send(outbox);
+  };
+  const auto meet = [&] {
+    send(a, {.expected = {RegionId{2}}});
+    send(far, {.expected = {RegionId{0}}});
+    match({&a, &far});
+  };
+  meet();
+  send(a, {.listeners = {RegionId{1}, RegionId{2}}});
+  ASSERT_TRUE(take_until(far, [&] { return !far.inbox.auras.empty() && far.inbox.auras.back().stamp == stamp; }));
+
+  send(far, {.left = {RegionId{0}}});
+  send(a, {.listeners = {RegionId{1}}, .left = {RegionId{2}}});
+  EXPECT_EQ(a.transport.found(), 4U);
+  far.inbox = {};
+  for (int i = 0; i < 3; ++i) send(a, {.listeners = {RegionId{1}}});
+  ASSERT_TRUE(take_until(b, [&] { return !b.inbox.auras.empty() && b.inbox.auras.back().stamp == stamp; }));
+  far.transport.take(far.inbox);
+  EXPECT_TRUE(far.inbox.auras.empty());
+
+  meet();
+  send(a, {.listeners = {RegionId{1}, RegionId{2}}});
+  EXPECT_TRUE(take_until(far, [&] { return !far.inbox.auras.empty() && far.inbox.auras.back().stamp == stamp; }));
+}
+
 TEST(Waiting, NamesTheRegionsThatAreMissing) {
   Peer a(own_domain(), 0, {1, 2, 3});
   Peer b(own_domain(), 1, {0});
