@@ -51,7 +51,7 @@ struct NodeArguments {
 }
 
 int run_node(const NodeArguments& arguments) {
-  const config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
+  config::Launch launch = config::read_launch(arguments.files.file, arguments.files.overrides);
   if (arguments.region >= launch.regions.size()) {
     throw config::BadConfig({fmt::format("--region: found {}, allowed: 0 to {} ({} has {} regions)", arguments.region,
                                          launch.regions.size() - 1, arguments.files.file, launch.regions.size())});
@@ -85,7 +85,7 @@ int run_node(const NodeArguments& arguments) {
   options.takes_over = arguments.takes_over;
   options.has_launcher = arguments.launcher.is_there;
   options.heartbeat = arguments.launcher.heartbeat;
-  process::NodeProcess process(launch, options);
+  process::NodeProcess process(std::move(launch), options);
   command_line::leave_after([&process] {
     const command_line::ExitCode code = process.run();
     if (!process.comes_back_as_spare()) return code;

@@ -133,7 +133,7 @@ void refuse_taken(const std::string& name, const Names& names, const Field& blam
 core::StaticBody read_static(const Field& field, std::size_t index, SceneDraft& draft) {
   core::StaticBody body;
   const Fields fields(field);
-  body.name = fields["name"].text().value_or(fmt::format("static {}", index));
+  body.name = fields["name"].text().value_or(core::StaticList::usual_name(index));
   if (fields.given()) {
     body.shape = read_shape_reference(fields["shape"], fmt::format("statics[{}]", index), draft).value_or(0);
   }
@@ -205,27 +205,31 @@ void read_prototypes(const Field& field, SceneDraft& draft) {
 
 void read_statics(const Field& field, SceneDraft& draft) {
   if (!field.given()) return;
-  std::unordered_set<std::string> names;
-  std::size_t index = 0;
-  for (const Field& item : field.items()) {
-    core::StaticBody body = read_static(item, index++, draft);
-    if (!names.insert(body.name).second) {
+  core::StaticList& statics = draft.scene.statics;
+  std::unordered_set<std::string> given;  // names; most statics have their usual one
+  field.for_each_item([&](const Field& item) {
+    const std::size_t index = statics.size();
+    const core::StaticBody body = read_static(item, index, draft);
+    const bool is_usual = body.name == core::StaticList::usual_name(index);
+    const bool is_taken = given.contains(body.name) || statics.find_usual(body.name);
+    if (is_taken) {
       item.complain(fmt::format("found the name {} a second time, allowed: each name once", in_quotes(body.name)));
     }
-    draft.scene.statics.push_back(std::move(body));
-  }
+    if (!is_usual) given.insert(body.name);
+    statics.push_back(body);
+  });
 }
 
 void read_bodies(const Field& field, SceneDraft& draft) {
   if (!field.given()) return;
   std::unordered_set<std::uint64_t> ids;
-  for (const Field& item : field.items()) {
+  field.for_each_item([&](const Field& item) {
     DraftBody body = read_body(item, draft);
     if (body.id && !ids.insert(value_of(*body.id)).second) {
       item.complain(fmt::format("found the id {} a second time, allowed: each id once", value_of(*body.id)));
     }
     draft.bodies.push_back(std::move(body));
-  }
+  });
 }
 
 void number_bodies(SceneDraft& draft) {

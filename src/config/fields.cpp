@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "config/gone.h"
+#include "config/packed_nodes.h"
 #include "config/utf8.h"
 
 namespace aurasim::config {
@@ -81,7 +82,7 @@ std::string Field::found() const {
     case YamlNode::Kind::kText:
       return in_quotes(node_->text);
     case YamlNode::Kind::kList:
-      return fmt::format("a list of {}", node_->children.size());
+      return fmt::format("a list of {}", node_->size());
     case YamlNode::Kind::kMap:
       return fmt::format("a map of {}", node_->children.size());
   }
@@ -182,11 +183,29 @@ std::vector<Field> Field::children(const Value& each) const {
 
 std::vector<Field> Field::items() const {
   const Value& wanted = as(Value::Kind::kList);
-  if (!is_list() || node_->children.size() < wanted.fewest || node_->children.size() > wanted.most) {
-    refuse(fmt::format("a list of {} to {}", wanted.fewest, wanted.most));
-    return {};
-  }
+  if (!is_list_of(wanted)) return {};
+  if (node_->packed) throw std::logic_error("the list is packed: " + path_);
   return children(wanted.items.front());
+}
+
+void Field::for_each_item(const std::function<void(const Field& item)>& visit) const {
+  const Value& wanted = as(Value::Kind::kList);
+  if (!is_list_of(wanted)) return;
+  std::size_t index = 0;
+  const auto visit_node = [&](const YamlNode& node) {
+    visit(Field(&node, place_, fmt::format("{}[{}]", path_, index++), wanted.items.front(), true, *errors_));
+  };
+  if (node_->packed) {
+    node_->packed->for_each(visit_node);
+  } else {
+    std::ranges::for_each(node_->children, visit_node);
+  }
+}
+
+bool Field::is_list_of(const Value& wanted) const {
+  if (is_list() && node_->size() >= wanted.fewest && node_->size() <= wanted.most) return true;
+  refuse(fmt::format("a list of {} to {}", wanted.fewest, wanted.most));
+  return false;
 }
 
 std::vector<std::pair<std::string, Field>> Field::entries() const {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -59,6 +60,8 @@ class Field {
 
   /// Returns the values of a list; none if the value is no valid list.
   std::vector<Field> items() const;
+  /// Calls visit(item) for the values of a list, which may be packed. None if the value is no valid list.
+  void for_each_item(const std::function<void(const Field& item)>& visit) const;
   /// Returns the entries of a map whose keys are names, in the order of the file, without repeated names.
   std::vector<std::pair<std::string, Field>> entries() const;
 
@@ -71,6 +74,7 @@ class Field {
  private:
   std::string found() const;
   const Value& as(Value::Kind kind) const;
+  bool is_list_of(const Value& wanted) const;
   std::vector<Field> children(const Value& each) const;
 
   const YamlNode* node_;

@@ -165,7 +165,7 @@ void read_scene_of(const Field& field, const std::vector<Override>& overrides, c
   if (!name) return;
   launch.scene_file = (launch.file.parent_path() / *name).lexically_normal();
   std::string why;
-  if (!read_bytes(launch.scene_file, kLargestFileBytes, why)) {
+  if (!can_be_read(launch.scene_file, kLargestFileBytes, why)) {
     field.refuse(fmt::format("a scene file ({}: {})", launch.scene_file.string(), why));
     return;
   }

@@ -77,7 +77,7 @@ void check_statics(const Field& physics, const Launch& launch) {
   const auto mover = std::ranges::find_if(launch.scene.statics, &core::StaticBody::moves);
   if (mover == launch.scene.statics.end()) return;
   physics.complain(fmt::format("found the solver {} and the static \"{}\", which moves; allowed: soft_step",
-                               launch.physics.solver, mover->name));
+                               launch.physics.solver, (*mover).name));
 }
 
 double reach_m(const Launch& launch) { return top_speed_aura(launch).reach(1) + 2 * largest_radius_m(launch.scene); }

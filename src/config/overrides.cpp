@@ -43,7 +43,7 @@ std::optional<Override> parse_override(const std::string& text, Errors& errors) 
 std::optional<std::size_t> index_in(const YamlNode& list, std::string_view name) {
   std::size_t index = 0;
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), index);
-  if (error != std::errc() || end != name.data() + name.size() || index >= list.children.size()) return std::nullopt;
+  if (error != std::errc() || end != name.data() + name.size() || index >= list.size()) return std::nullopt;
   return index;
 }
 
@@ -51,7 +51,7 @@ std::optional<std::size_t> index_in(const YamlNode& list, std::string_view name)
 YamlNode* child_of(YamlNode& parent, const std::string& name, const Place& at) {
   if (parent.kind == YamlNode::Kind::kList) {
     const auto index = index_in(parent, name);
-    return index ? &parent.children[*index] : nullptr;
+    return index ? &parent.entry(*index) : nullptr;
   }
   if (parent.kind != YamlNode::Kind::kMap) return nullptr;
   if (YamlNode* child = parent.find(name)) return child;
@@ -66,8 +66,8 @@ YamlNode* child_of(YamlNode& parent, const std::string& name, const Place& at) {
 std::string way_on(const YamlNode& parent) {
   switch (parent.kind) {
     case YamlNode::Kind::kList:
-      return parent.children.empty() ? "nothing, the list is empty"
-                                     : fmt::format("an index from 0 to {}", parent.children.size() - 1);
+      return parent.size() == 0 ? "nothing, the list is empty"
+                                : fmt::format("an index from 0 to {}", parent.size() - 1);
     case YamlNode::Kind::kText:
       return fmt::format("nothing below the value {}", in_quotes(parent.text));
     default:

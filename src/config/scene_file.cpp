@@ -13,6 +13,8 @@ namespace aurasim::config {
 namespace {
 
 constexpr std::size_t kMostStatics = 100'000;
+/// Keys of lists that grow with the world.
+constexpr std::string_view kLongLists[] = {"statics", "bodies"};
 
 const KeysOf<core::Scene>& scene_keys() {
   using core::Scene;
@@ -91,7 +93,7 @@ class Reader {
 
  private:
   SceneDraft read_part(const std::filesystem::path& file, IncludeChain& chain) {
-    const std::optional<YamlNode> root = read_yaml(file, errors_);
+    const std::optional<YamlNode> root = read_yaml(file, errors_, kLongLists);
     return root ? read(*root, file, chain, false) : SceneDraft{};
   }
 
@@ -105,7 +107,7 @@ const KeyTable& scene_file_keys() { return scene_keys(); }
 
 SceneFile read_scene_file(const std::filesystem::path& file, const std::vector<Override>& overrides,
                           const LaunchLayout& launch, Errors& errors) {
-  std::optional<YamlNode> root = read_yaml(file, errors);
+  std::optional<YamlNode> root = read_yaml(file, errors, kLongLists);
   if (!root) return {};
   for (const Override& change : overrides) apply_override(change, *root, errors);
   if (YamlNode* layout = root->find("layout")) settle_overridden_layout(*layout);

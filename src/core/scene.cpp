@@ -100,9 +100,8 @@ const InitialBody* find_body(const Scene& scene, BodyId id) {
 }
 
 std::optional<StaticId> find_static(const Scene& scene, std::string_view name) {
-  const auto found = std::ranges::find(scene.statics, name, &StaticBody::name);
-  if (found == scene.statics.end()) return std::nullopt;
-  return StaticId{static_cast<std::uint32_t>(found - scene.statics.begin())};
+  const std::optional<std::size_t> found = scene.statics.find(name);
+  return found ? std::optional(StaticId{static_cast<std::uint32_t>(*found)}) : std::nullopt;
 }
 
 std::vector<Contact> joint_pairs(const Scene& scene, const std::vector<BodyState>& bodies) {

@@ -81,19 +81,28 @@ StaticMoves StaticMoves::ordered(StaticId id) const {
   return certain;
 }
 
-Pose StaticMoves::pose(const StaticBody& body, StaticId id, Step step, double step_s) const {
+/// The pose to which moves have brought a static; nothing if it has not been moved by this state.
+std::optional<Pose> StaticMoves::moved(StaticId id, Step step) const {
   const auto known = moves_.find(id);
-  if (known != moves_.end()) {
-    const auto later = std::ranges::upper_bound(known->second, step, {}, &Move::at_step);
-    if (later != known->second.begin()) {
-      const Move& newest = *(later - 1);
-      const MoveStatic& move = newest.move;
-      if (step + 1 >= newest.at_step + move.states) return move.to;
-      return pose_between(move.from, move.to,
-                          static_cast<double>(step + 1 - newest.at_step) / static_cast<double>(move.states));
-    }
-  }
+  if (known == moves_.end()) return std::nullopt;
+  const auto later = std::ranges::upper_bound(known->second, step, {}, &Move::at_step);
+  if (later == known->second.begin()) return std::nullopt;
+  const Move& newest = *(later - 1);
+  const MoveStatic& move = newest.move;
+  if (step + 1 >= newest.at_step + move.states) return move.to;
+  return pose_between(move.from, move.to,
+                      static_cast<double>(step + 1 - newest.at_step) / static_cast<double>(move.states));
+}
+
+Pose StaticMoves::pose(const StaticBody& body, StaticId id, Step step, double step_s) const {
+  if (const std::optional<Pose> pose = moved(id, step)) return *pose;
   return pose_at(body, static_cast<double>(step) * step_s);
+}
+
+Pose StaticMoves::pose(const StaticList& statics, StaticId id, Step step, double step_s) const {
+  if (const std::optional<Pose> pose = moved(id, step)) return *pose;
+  const std::uint32_t index = value_of(id);
+  return statics.moves(index) ? pose_at(statics[index], static_cast<double>(step) * step_s) : statics.pose(index);
 }
 
 Step StaticMoves::newest(StaticId id) const {

@@ -31,6 +31,8 @@ class StaticMoves {
 
   /// Pose of the static in state `step`; states are step_s apart.
   Pose pose(const StaticBody& body, StaticId id, Step step, double step_s) const;
+  /// The same, of a static of `statics`.
+  Pose pose(const StaticList& statics, StaticId id, Step step, double step_s) const;
   /// State in which the newest move of a static begins; 0 if it has none.
   Step newest(StaticId id) const;
   /// Calls visit(id), ascending, for each static that has moves.
@@ -58,6 +60,7 @@ class StaticMoves {
     bool is_ordered = false;
   };
   void insert(Move move);
+  std::optional<Pose> moved(StaticId id, Step step) const;
 
   std::map<StaticId, std::vector<Move>> moves_;  ///< by static, ascending at_step
   std::size_t expected_ = 0;

@@ -69,7 +69,7 @@ bool HeldStatics::is_in(std::uint32_t index) const {
 
 Bounds HeldStatics::bounds(std::uint32_t index) const {
   const auto known = held_.find(index);
-  return known != held_.end() ? bounds_of(*known->second.object) : bounds_of(scene_.statics[index], *shapes_);
+  return known != held_.end() ? bounds_of(*known->second.object) : bounds_of_static(scene_, index, *shapes_);
 }
 
 bool HeldStatics::is_absent(std::uint32_t index) const { return std::ranges::binary_search(absent_, index); }
@@ -83,7 +83,7 @@ void HeldStatics::bring(std::span<const Bounds> places) {
 
 void HeldStatics::hold(std::uint32_t index) {
   if (held_.contains(index)) return;
-  places_->for_each_cell(bounds_of(scene_.statics[index], *shapes_), [this](std::uint32_t cell) { hold_cell(cell); });
+  places_->for_each_cell(bounds_of_static(scene_, index, *shapes_), [this](std::uint32_t cell) { hold_cell(cell); });
 }
 
 btRigidBody& HeldStatics::hold_always(std::uint32_t index) {
@@ -122,7 +122,7 @@ void HeldStatics::place(std::uint32_t index, Held& held) {
   held.is_in = stands;
   btRigidBody* const object = held.object.get();
   if (stands) {
-    world_.insert_static(*object, 1 + static_cast<int>(index), to_bullet(scene_.statics[index].pose));
+    world_.insert_static(*object, 1 + static_cast<int>(index), to_bullet(scene_.statics.pose(index)));
   } else {
     world_.remove_statics({&object, 1});
   }

@@ -114,9 +114,8 @@ std::vector<Target> RayScene::Impl::targets(core::Step step, std::span<const Pla
   std::vector<Target> all;
   for (std::size_t i = 0; i < scene.statics.size(); ++i) {
     if (!timeline.stands(static_cast<std::uint32_t>(i), step)) continue;
-    const core::StaticBody& body = scene.statics[i];
-    add(core::ref_of(core::StaticId{static_cast<std::uint32_t>(i)}), body.shape,
-        timeline.moves().pose(body, core::StaticId{static_cast<std::uint32_t>(i)}, step, step_s), fan, all);
+    const core::StaticId id{static_cast<std::uint32_t>(i)};
+    add(core::ref_of(id), scene.statics.shape(i), timeline.moves().pose(scene.statics, id, step, step_s), fan, all);
   }
   for (const PlacedBody& body : bodies) {
     if (body.id == fan.carrier || core::value_of(body.prototype) >= scene.prototypes.size()) continue;

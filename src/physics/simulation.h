@@ -131,7 +131,8 @@ class Simulation {
   void drop_guests(std::span<const core::BodyId> ids);
   void show_statics(core::Step n);
   void wake_near(std::span<const Bounds> changing);
-  core::Pose pose_of_static(std::uint32_t index, core::Step n) const;
+  struct MovingStatic;
+  core::Pose pose_of(const MovingStatic& moving, core::Step n) const;
   void make_moving(std::uint32_t index, bool goes);
   void note_moving_statics();
   void place_moving_statics();
@@ -206,6 +207,7 @@ class Simulation {
   HeldStatics statics_;
   struct MovingStatic {
     std::uint32_t index;
+    core::StaticBody body;
     std::unique_ptr<Belt> belt;
     bool goes = false;  ///< it moves or has moved; false: it only has a belt
   };

@@ -27,7 +27,7 @@ void Simulation::make_moving(std::uint32_t index, bool goes) {
   if (!settings_.looks_once()) {
     throw std::invalid_argument(scene_->statics[index].name + " moves, which this solver does not know");
   }
-  const MovingStatic& made = *moving_statics_.insert(place, {index, std::make_unique<Belt>(), goes});
+  const MovingStatic& made = *moving_statics_.insert(place, {index, scene_->statics[index], std::make_unique<Belt>(), goes});
   btRigidBody& fixed = statics_.hold_always(index);
   physics::make_moving(fixed, *made.belt);
   if (statics_.is_in(index)) world_.begin_moving(fixed);
@@ -46,7 +46,7 @@ void Simulation::show_statics(core::Step n) {
   const auto first_new = static_cast<std::uint32_t>(statics_.size());
   const std::vector<Bounds> changed = statics_.show(timeline_, n);
   for (auto i = first_new; i < statics_.size(); ++i) {
-    if (scene_->statics[i].moves()) make_moving(i, scene_->statics[i].path.has_value());
+    if (scene_->statics.moves(i)) make_moving(i, scene_->statics[i].path.has_value());
   }
   if (!changed.empty()) wake_near(changed);
 }
@@ -78,8 +78,8 @@ void Simulation::note_near(const Bounds& where) {
   for (const std::uint32_t place : near_) notes_.for_snapshot.note(table_[place].id);
 }
 
-core::Pose Simulation::pose_of_static(std::uint32_t index, core::Step n) const {
-  return timeline_.moves().pose(scene_->statics[index], core::StaticId{index}, n, settings_.step_s);
+core::Pose Simulation::pose_of(const MovingStatic& moving, core::Step n) const {
+  return timeline_.moves().pose(moving.body, core::StaticId{moving.index}, n, settings_.step_s);
 }
 
 /// Places moving statics at their poses of the present state.
@@ -87,7 +87,7 @@ void Simulation::place_moving_statics() {
   note_moving_statics();
   for (const MovingStatic& moving : moving_statics_) {
     if (!moving.goes) continue;
-    const btTransform pose = to_bullet(pose_of_static(moving.index, step_));
+    const btTransform pose = to_bullet(pose_of(moving, step_));
     statics_.find(moving.index)->setWorldTransform(pose);
     if (statics_.is_in(moving.index)) world_.bound(*statics_.find(moving.index), pose);
   }
@@ -99,10 +99,10 @@ void Simulation::start_moving_statics() {
   note_moving_statics();
   for (const MovingStatic& moving : moving_statics_) {
     if (!statics_.is_in(moving.index)) continue;
-    const core::StaticBody& body = scene_->statics[moving.index];
+    const core::StaticBody& body = moving.body;
     btRigidBody& rigid = *statics_.find(moving.index);
-    const core::Pose X_WS = pose_of_static(moving.index, step_ + 1);
-    const core::Twist twist = core::twist_between(pose_of_static(moving.index, step_), X_WS, settings_.step_s);
+    const core::Pose X_WS = pose_of(moving, step_ + 1);
+    const core::Twist twist = core::twist_between(pose_of(moving, step_), X_WS, settings_.step_s);
     const btTransform after = to_bullet(X_WS);
     rigid.setLinearVelocity(to_bullet(twist.v_W));
     rigid.setAngularVelocity(to_bullet(twist.w_W));
@@ -120,13 +120,13 @@ std::vector<Simulation::Shove> Simulation::coming_shoves() const {
   std::vector<Shove> shoves;
   for (const MovingStatic& moving : moving_statics_) {
     if (!statics_.is_in(moving.index)) continue;
-    const core::StaticBody& body = scene_->statics[moving.index];
+    const core::StaticBody& body = moving.body;
     const btCollisionShape& shape = *statics_.find(moving.index)->getCollisionShape();
     Shove shove{bounds_of(*statics_.find(moving.index)), 0};
     const core::Step last = moving.goes ? step_ + foreseen() : step_;
-    core::Pose before = pose_of_static(moving.index, step_);
+    core::Pose before = pose_of(moving, step_);
     for (core::Step n = step_ + 1; n <= last; ++n) {
-      const core::Pose after = pose_of_static(moving.index, n);
+      const core::Pose after = pose_of(moving, n);
       shove.where.add(bounds_of(shape, to_bullet(after)));
       const core::Twist twist = core::twist_between(before, after, settings_.step_s);
       const double arm = twist.w_W.isZero() ? 0 : core::bounding_radius(scene_->shapes[body.shape].shape);

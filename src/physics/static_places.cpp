@@ -19,8 +19,8 @@ std::int32_t cell_at(btScalar at_m, std::int32_t if_none) {
 
 }  // namespace
 
-Bounds bounds_of(const core::StaticBody& fixed, const ShapeSet& shapes) {
-  return bounds_of(*shapes.shape(fixed.shape), to_bullet(fixed.pose));
+Bounds bounds_of_static(const core::Scene& scene, std::uint32_t index, const ShapeSet& shapes) {
+  return bounds_of(*shapes.shape(scene.statics.shape(index)), to_bullet(scene.statics.pose(index)));
 }
 
 std::int64_t StaticPlaces::Range::count() const {
@@ -42,8 +42,8 @@ StaticPlaces::StaticPlaces(const core::Scene& scene, const ShapeSet& shapes) : s
   };
   std::vector<Entry> entries;
   for (std::uint32_t i = 0; i < size_; ++i) {
-    const Range range = range_of(bounds_of(scene.statics[i], shapes));
-    if (scene.statics[i].moves() || range.count() > kMostCells) {
+    const Range range = range_of(bounds_of_static(scene, i, shapes));
+    if (scene.statics.moves(i) || range.count() > kMostCells) {
       everywhere_.push_back(i);
       continue;
     }

@@ -17,7 +17,7 @@
 namespace aurasim::physics {
 
 /// The bounds of a static at its first place.
-Bounds bounds_of(const core::StaticBody& fixed, const ShapeSet& shapes);
+Bounds bounds_of_static(const core::Scene& scene, std::uint32_t index, const ShapeSet& shapes);
 
 class StaticPlaces {
  public:

@@ -1,6 +1,7 @@
 #include "process/node_process.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -19,8 +20,8 @@ double milliseconds(Clock::duration d) { return std::chrono::duration<double, st
 
 }  // namespace
 
-NodeProcess::NodeProcess(const config::Launch& launch, const NodeOptions& options)
-    : run_(launch, options),
+NodeProcess::NodeProcess(config::Launch launch, const NodeOptions& options)
+    : run_(std::move(launch), options),
       succession_(run_),
       executor_(run_, succession_),
       clients_(run_, executor_),

@@ -17,7 +17,7 @@ namespace aurasim::process {
 
 class NodeProcess {
  public:
-  NodeProcess(const config::Launch& launch, const NodeOptions& options);
+  NodeProcess(config::Launch launch, const NodeOptions& options);
 
   command_line::ExitCode run();
   /// To be called after run(). True if another process has this region now, so that this process may serve the run as a

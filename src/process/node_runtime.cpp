@@ -58,8 +58,8 @@ FenceSettings fence_settings(const config::Launch& launch, const NodeOptions& op
 
 }  // namespace
 
-NodeRuntime::NodeRuntime(const config::Launch& the_launch, const NodeOptions& the_options)
-    : launch(the_launch),
+NodeRuntime::NodeRuntime(config::Launch the_launch, const NodeOptions& the_options)
+    : launch(std::move(the_launch)),
       options(the_options),
       endpoints(launch, options),
       fence(fence_settings(launch, options, !endpoints.stays_on_this_host()),

@@ -44,7 +44,7 @@ class SomebodyDied : public std::runtime_error {
 struct NodeRuntime {
   using Clock = std::chrono::steady_clock;
 
-  NodeRuntime(const config::Launch& the_launch, const NodeOptions& the_options);
+  NodeRuntime(config::Launch the_launch, const NodeOptions& the_options);
   NodeRuntime(const NodeRuntime&) = delete;
   NodeRuntime& operator=(const NodeRuntime&) = delete;
 

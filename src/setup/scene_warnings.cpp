@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <memory>
 #include <set>
 #include <utility>
@@ -134,26 +135,21 @@ class StartOfScene {
 
   /// Adds a warning that the body overlaps a static; at most one for each body.
   void add_overlap_with_static(std::uint32_t i, OfAKind& overlaps) const {
-    for (const core::StaticBody* const plane : planes_) {
-      if (add_overlap_with_plane(i, *plane, overlaps)) return;
+    for (const std::uint32_t plane : planes_) {
+      if (add_overlap_with_plane(i, scene_.statics[plane], overlaps)) return;
     }
     const core::InitialBody& one = scene_.bodies[i];
     statics_.any(bodies_[i], [&](std::uint32_t at) {
-      const ConvexStatic& other = convex_statics_[at];
-      const double depth = depth_of(other.prototype, other.body->pose, one);
+      const std::uint32_t other = convex_statics_[at];
+      const double depth = depth_of(prototypes_.at(scene_.statics.shape(other)), scene_.statics.pose(other), one);
       if (depth <= 0) return false;
       overlaps.add(fmt::format("{} is {:.2g} m deep in the static \"{}\" at the start", body_at_place(launch_, i),
-                               depth, other.body->name));
+                               depth, scene_.statics[other].name));
       return true;
     });
   }
 
  private:
-  struct ConvexStatic {
-    const core::StaticBody* body = nullptr;
-    core::PrototypeId prototype{};  ///< prototype of a body with the static's shape
-  };
-
   const core::Shape& shape_of(const core::InitialBody& body) const {
     return scene_.shapes[scene_.prototypes[core::value_of(body.prototype)].shape].shape;
   }
@@ -165,14 +161,16 @@ class StartOfScene {
 
   std::vector<core::BoxTree::Box> boxes_of_statics() {
     std::vector<core::BoxTree::Box> boxes;
-    for (const core::StaticBody& body : scene_.statics) {
-      const core::Shape& shape = scene_.shapes[body.shape].shape;
+    for (std::uint32_t i = 0; i < scene_.statics.size(); ++i) {
+      const std::uint32_t of = scene_.statics.shape(i);
+      const core::Shape& shape = scene_.shapes[of].shape;
       if (std::holds_alternative<core::Plane>(shape)) {
-        planes_.push_back(&body);
+        planes_.push_back(i);
       } else if (!std::holds_alternative<core::TriangleMesh>(shape)) {
-        convex_statics_.push_back({&body, core::PrototypeId{static_cast<std::uint32_t>(scene_.prototypes.size())}});
-        scene_.prototypes.push_back({.name = body.name, .shape = body.shape, .material = body.material});
-        boxes.push_back(box_around(shape, body.pose));
+        const core::PrototypeId next{static_cast<std::uint32_t>(scene_.prototypes.size())};
+        if (prototypes_.emplace(of, next).second) scene_.prototypes.push_back({.name = "static", .shape = of});
+        convex_statics_.push_back(i);
+        boxes.push_back(box_around(shape, scene_.statics.pose(i)));
       }
     }
     return boxes;
@@ -204,8 +202,8 @@ class StartOfScene {
 
   const config::Launch& launch_;
   core::Scene scene_;
-  std::vector<const core::StaticBody*> planes_;
-  std::vector<ConvexStatic> convex_statics_;
+  std::vector<std::uint32_t> planes_, convex_statics_;       ///< statics
+  std::map<std::uint32_t, core::PrototypeId> prototypes_;  ///< of bodies with the shapes of convex statics, by shape
   core::BoxTree bodies_, statics_;
   std::vector<bool> overlapping_;  ///< bodies that are named in a warning, or counted beyond the limit
   std::unique_ptr<core::ClearanceQuery> query_;

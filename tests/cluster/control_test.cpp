@@ -218,10 +218,11 @@ INSTANTIATE_TEST_SUITE_P(Redo, SteeredCluster, testing::Bool());
 void add_movers(core::Scene& scene) {
   scene.shapes.push_back({"mover", core::Box{{2.5, 2.5, 0.3}}});
   for (int i = 0; i < 4; ++i) {
-    core::StaticBody& body = scene.statics.emplace_back();
+    core::StaticBody body;
     body.name = "mover " + std::to_string(i);
     body.shape = static_cast<std::uint32_t>(scene.shapes.size() - 1);
     body.pose.p_WB = {4.0 * i - 6, 6.0 - 4 * i, 0.4};
+    scene.statics.push_back(body);
   }
 }
 

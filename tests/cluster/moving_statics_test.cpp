@@ -19,12 +19,13 @@ Quat yaw(double rad) { return Quat(Eigen::AngleAxisd(rad, Vec3::UnitZ())); }
 void add_box(core::Scene& scene, const Vec3& half_extents, const Vec3& p, std::optional<core::StaticPath> path,
              const Vec3& belt = Vec3::Zero()) {
   scene.shapes.push_back({"box", core::Box{half_extents}});
-  core::StaticBody& body = scene.statics.emplace_back();
-  body.name = "mover " + std::to_string(scene.statics.size());
+  core::StaticBody body;
+  body.name = "mover " + std::to_string(scene.statics.size() + 1);
   body.shape = static_cast<std::uint32_t>(scene.shapes.size() - 1);
   body.pose.p_WB = p;
   body.path = std::move(path);
   body.belt_S = belt;
+  scene.statics.push_back(body);
 }
 
 /// Where regions meet.

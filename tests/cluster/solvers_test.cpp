@@ -62,13 +62,13 @@ TEST_P(SolverBits, OfDrivenJointsAreThoseOfTheCentralRun) {
 /// Tiles and a mesh, side by side, with nothing but air around them. A tile goes down and comes back, if it may move.
 void lay_floor(core::Scene& scene, bool moves) {
   constexpr double kTile = 1.3;
-  const auto add = [&scene](const core::Shape& shape, const core::Vec3& p) -> core::StaticBody& {
+  const auto add = [&scene](const core::Shape& shape, const core::Vec3& p) {
     scene.shapes.push_back({"piece", shape});
-    core::StaticBody& piece = scene.statics.emplace_back();
-    piece.name = "piece " + std::to_string(scene.statics.size());
+    core::StaticBody piece;
+    piece.name = "piece " + std::to_string(scene.statics.size() + 1);
     piece.shape = static_cast<std::uint32_t>(scene.shapes.size() - 1);
     piece.pose.p_WB = p;
-    return piece;
+    scene.statics.push_back(piece);
   };
   scene.statics.clear();
   for (int column = -6; column <= 6; ++column) {
@@ -78,7 +78,9 @@ void lay_floor(core::Scene& scene, bool moves) {
   }
   if (moves) {
     const core::Quat none = core::Quat::Identity();
-    scene.statics[45].path = core::StaticPath{{{0.7, {{0, 0, -0.5}, none}}, {1.4, {{0, 0, 0}, none}}}, false, true};
+    scene.statics.change(45, [&none](core::StaticBody& tile) {
+      tile.path = core::StaticPath{{{0.7, {{0, 0, -0.5}, none}}, {1.4, {{0, 0, 0}, none}}}, false, true};
+    });
   }
   core::TriangleMesh mesh;
   for (int row = 0; row < 9; ++row) {

@@ -45,7 +45,7 @@ TEST(SceneFile, AStaticMayHaveAPathAndABelt) {
   const std::string text =
       "statics: [{shape: {box: {size: [1, 1, 1]}}, position: [5, 0, 0], belt: [0, 2, 0], path: {smooth: false, "
       "stops: [{at: 2, position: [0, 0, 3]}, {at: 4}]}}, {shape: {sphere: {radius: 1}}}]\n";
-  const std::vector<core::StaticBody> statics = workspace.scene(text).statics;
+  const core::StaticList statics = workspace.scene(text).statics;
   ASSERT_TRUE(statics.at(0).path);
   EXPECT_EQ(statics[0].belt_S, core::Vec3(0, 2, 0));
   EXPECT_EQ(statics[0].pose.p_WB, core::Vec3(5, 0, 0));

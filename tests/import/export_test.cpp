@@ -73,11 +73,12 @@ INSTANTIATE_TEST_SUITE_P(Models, ThereAndBack,
 TEST(Export, WhatSdfCannotSayIsNamed) {
   core::Scene scene = scene_of(model_of("hips.xml"));
   scene.shapes.push_back({"gate", core::Sphere{}});
-  core::StaticBody& gate = scene.statics.emplace_back();
+  core::StaticBody gate;
   gate.name = "gate";
   gate.shape = static_cast<std::uint32_t>(scene.shapes.size() - 1);
   gate.belt_S = {1, 0, 0};
   gate.path = {{{1, {}}}, false, true};
+  scene.statics.push_back(gate);
   const SdfText text = sdf_text(scene, std::vector<std::string>(scene.bodies.size()), "x.sdf", physics::hull_triangles);
   std::vector<std::string> elements;
   for (const Finding& finding : text.lost) elements.push_back(finding.element);

@@ -123,12 +123,13 @@ class GoesBack {
       if (random() % 2 == 0) joint.break_impulse = uniform(random, 0.2, 1);
     }
     if (settings.looks_once()) {
-      core::StaticBody& belt = made.statics.emplace_back();
+      core::StaticBody belt;
       belt.name = "belt";
       belt.shape = made.prototypes[kBox].shape;
       belt.pose.p_WB = {3, 3, 0};
       belt.path = core::StaticPath{{{0.5, {core::Vec3(0, 0, 0.4), core::Quat::Identity()}}, {1, {}}}, true, true};
       belt.belt_S = {0.5, 0, 0};
+      made.statics.push_back(belt);
     }
     return made;
   }
@@ -176,11 +177,12 @@ class GoesBack {
   }
   /// A block comes and goes.
   void order_static(core::Step at) {
-    core::StaticBody& block = scene.statics.emplace_back();
+    core::StaticBody block;
     block.name = "block";
     block.shape = scene.prototypes[kBox].shape;
     block.pose.p_WB = {uniform(random, -1, 9), uniform(random, -1, 1), 0.3};
-    const core::StaticId id{static_cast<std::uint32_t>(scene.statics.size() - 1)};
+    const core::StaticId id{static_cast<std::uint32_t>(scene.statics.size())};
+    scene.statics.push_back(block);
     order(at, core::AddStatic{id, block.shape, block.pose});
     order(at + 1 + static_cast<core::Step>(pick(60)), core::RemoveStatic{id});
   }

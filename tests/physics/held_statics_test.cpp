@@ -189,7 +189,7 @@ TEST(StaticPlaces, FindTheStaticsOfABox) {
       for (const std::uint32_t index : places.in(cell)) found.insert(index);
     });
     for (std::uint32_t k = 0; k < kTiles; ++k) {
-      const Bounds tile = bounds_of(scene.statics[k], shapes);
+      const Bounds tile = bounds_of_static(scene, k, shapes);
       const bool meets = tile.low.x() <= where.high.x() && tile.high.x() >= where.low.x() &&
                          tile.low.y() <= where.high.y() && tile.high.y() >= where.low.y();
       EXPECT_TRUE(!meets || found.contains(k)) << i << " " << k;

@@ -349,7 +349,9 @@ TEST(InnerEdges, ATileThatHasGoneLeavesARealEdge) {
   for (int i = 0; i < 8; ++i) {
     add_static(scene, core::Box{{0.5, 2, 0.25}}, {Vec3(i, 0, -0.25), core::Quat::Identity()});
   }
-  scene.statics[3].path = core::StaticPath{{{1, {Vec3(0, 0, -0.06), core::Quat::Identity()}}}, false, true};
+  scene.statics.change(3, [](core::StaticBody& tile) {
+    tile.path = core::StaticPath{{{1, {Vec3(0, 0, -0.06), core::Quat::Identity()}}}, false, true};
+  });
   const core::BodyRecord early = after(scene, body(1, 0, {0, 0.1, 0.3}), 1);
   EXPECT_NEAR(early.p_WB.z(), 0.3, 1e-3);
   RegionWorld world(scene, balanced());

@@ -25,13 +25,11 @@ class MovingStatics : public ::testing::Test {
     settings.friction_directions = 2;
   }
 
-  core::StaticBody& add_box(const Vec3& half_extents, const Vec3& p) {
+  void add_box(const Vec3& half_extents, const Vec3& p, std::optional<core::StaticPath> path = {},
+               const Vec3& belt_S = Vec3::Zero(), const Quat& q_WB = Quat::Identity()) {
     scene.shapes.push_back({"box", core::Box{half_extents}});
-    core::StaticBody& added = scene.statics.emplace_back();
-    added.name = "it";
-    added.shape = static_cast<std::uint32_t>(scene.shapes.size() - 1);
-    added.pose.p_WB = p;
-    return added;
+    const auto shape = static_cast<std::uint32_t>(scene.shapes.size() - 1);
+    scene.statics.push_back({"it", shape, 0, {p, q_WB}, std::move(path), belt_S});
   }
   static PathStop stop(double at_s, const Vec3& p, const Quat& q = Quat::Identity()) { return {at_s, {p, q}}; }
   static Quat yaw(double rad) { return Quat(Eigen::AngleAxisd(rad, Vec3::UnitZ())); }
@@ -41,7 +39,7 @@ class MovingStatics : public ::testing::Test {
 };
 
 TEST_F(MovingStatics, ALiftCarriesWhatStandsOnIt) {
-  add_box({2, 2, 0.25}, {0, 0, 0.25}).path = {{stop(1, {0, 0, 0}), stop(4, {0, 0, 3})}, false, true};
+  add_box({2, 2, 0.25}, {0, 0, 0.25}, core::StaticPath{{stop(1, {0, 0, 0}), stop(4, {0, 0, 3})}, false, true});
   RegionWorld world(scene, settings);
   const core::BodyRecord bodies[] = {body(1, kBox, {0, 0, 0.95}), body(2, kSphere, {1, 0, 0.95})};
   world.add(bodies);
@@ -57,7 +55,7 @@ TEST_F(MovingStatics, ALiftCarriesWhatStandsOnIt) {
 }
 
 TEST_F(MovingStatics, ALiftThatStartsWakesWhatSleepsOnIt) {
-  add_box({2, 2, 0.25}, {0, 0, 0.25}).path = {{stop(5, {0, 0, 0}), stop(6, {0, 0, 1})}, false, true};
+  add_box({2, 2, 0.25}, {0, 0, 0.25}, core::StaticPath{{stop(5, {0, 0, 0}), stop(6, {0, 0, 1})}, false, true});
   RegionWorld world(scene, settings);
   const core::BodyRecord bodies[] = {body(1, kBox, {0, 0, 0.95}), body(2, kBox, {9, 0, 0.5})};
   world.add(bodies);
@@ -72,9 +70,7 @@ TEST_F(MovingStatics, ALiftThatStartsWakesWhatSleepsOnIt) {
 }
 
 TEST_F(MovingStatics, ABeltCarriesAtItsSpeedAlongItself) {
-  core::StaticBody& belt = add_box({10, 1, 0.25}, {0, 0, 0.25});
-  belt.belt_S = {1.5, 0, 0};
-  belt.pose.q_WB = yaw(std::numbers::pi / 2);
+  add_box({10, 1, 0.25}, {0, 0, 0.25}, {}, {1.5, 0, 0}, yaw(std::numbers::pi / 2));
   RegionWorld world(scene, settings);
   const core::BodyRecord crate = body(1, kBox, {0, -8, 0.95});
   world.add({&crate, 1});
@@ -88,7 +84,7 @@ TEST_F(MovingStatics, ABeltCarriesAtItsSpeedAlongItself) {
 }
 
 TEST_F(MovingStatics, AGatePushesWhatIsInItsWay) {
-  add_box({0.1, 3, 1}, {0, 0, 1.05}).path = {{stop(2, {4, 0, 0})}, false, false};
+  add_box({0.1, 3, 1}, {0, 0, 1.05}, core::StaticPath{{stop(2, {4, 0, 0})}, false, false});
   RegionWorld world(scene, settings);
   const core::BodyRecord bodies[] = {body(1, kBox, {2, 0, 0.5}), body(2, kCapsule, {1, 2, 0.9})};
   world.add(bodies);
@@ -101,7 +97,7 @@ TEST_F(MovingStatics, AGatePushesWhatIsInItsWay) {
 }
 
 TEST_F(MovingStatics, AFastGateMissesNobody) {
-  add_box({0.05, 3, 1}, {-20, 0, 1.05}).path = {{stop(0.5, {0, 0, 0}), stop(1, {40, 0, 0})}, false, false};
+  add_box({0.05, 3, 1}, {-20, 0, 1.05}, core::StaticPath{{stop(0.5, {0, 0, 0}), stop(1, {40, 0, 0})}, false, false});
   RegionWorld world(scene, settings);
   const core::BodyRecord ball = body(1, kSphere, {0, 0, 0.5});
   world.add({&ball, 1});
@@ -111,13 +107,14 @@ TEST_F(MovingStatics, AFastGateMissesNobody) {
 
 TEST_F(MovingStatics, ATurntableTakesWhatLiesOnItRound) {
   scene.shapes.push_back({"disc", core::Cylinder{3, 0.5}});
-  core::StaticBody& disc = scene.statics.emplace_back();
+  core::StaticBody disc;
   disc.name = "disc";
   disc.shape = static_cast<std::uint32_t>(scene.shapes.size() - 1);
   disc.pose.p_WB = {0, 0, 0.25};
   constexpr double kThird = 2 * std::numbers::pi / 3;
   disc.path = {
       {stop(2, Vec3::Zero(), yaw(kThird)), stop(4, Vec3::Zero(), yaw(2 * kThird)), stop(6, Vec3::Zero())}, true, false};
+  scene.statics.push_back(disc);
   RegionWorld world(scene, settings);
   const core::BodyRecord crate = body(1, kBox, {1.2, 0, 0.95});
   world.add({&crate, 1});
@@ -130,7 +127,7 @@ TEST_F(MovingStatics, ATurntableTakesWhatLiesOnItRound) {
 }
 
 TEST_F(MovingStatics, RaysMeetThemWhereTheyAre) {
-  add_box({1, 1, 0.25}, {0, 0, 5}).path = {{stop(1, {0, 0, 4})}, false, false};
+  add_box({1, 1, 0.25}, {0, 0, 5}, core::StaticPath{{stop(1, {0, 0, 4})}, false, false});
   RegionWorld world(scene, settings);
   EXPECT_NEAR(world.cast({0, 0, 20}, {0, 0, 0}).distance_m, 14.75, 1e-3);
   run(world, 30);
@@ -140,17 +137,17 @@ TEST_F(MovingStatics, RaysMeetThemWhereTheyAre) {
 }
 
 TEST_F(MovingStatics, AreNotForOtherSolvers) {
-  add_box({1, 1, 1}, {0, 0, 1}).belt_S = {1, 0, 0};
+  add_box({1, 1, 1}, {0, 0, 1}, {}, {1, 0, 0});
   settings.solver = Solver::kSequentialImpulse;
   EXPECT_THROW(RegionWorld(scene, settings), std::invalid_argument);
 }
 
 /// Some of the bodies are handed to another world on the way, late, and computed up to where that one is.
 TEST_F(MovingStatics, HaveTheSameBitsWhoeverComputesThem) {
-  add_box({2, 2, 0.25}, {0, 0, 0.2}).path = {{stop(0.7, {0, 0, 1}), stop(1.4, {0, 0, 0})}, true, true};
-  add_box({0.2, 3, 0.5}, {60, 0, 0.6}).path = {
-      {stop(1, Vec3::Zero(), yaw(2)), stop(2, Vec3::Zero(), yaw(4)), stop(3, Vec3::Zero())}, true, false};
-  add_box({3, 2, 0.2}, {120, 0, 0.2}).belt_S = {-2, 1, 0};
+  add_box({2, 2, 0.25}, {0, 0, 0.2}, core::StaticPath{{stop(0.7, {0, 0, 1}), stop(1.4, {0, 0, 0})}, true, true});
+  add_box({0.2, 3, 0.5}, {60, 0, 0.6}, core::StaticPath{
+      {stop(1, Vec3::Zero(), yaw(2)), stop(2, Vec3::Zero(), yaw(4)), stop(3, Vec3::Zero())}, true, false});
+  add_box({3, 2, 0.2}, {120, 0, 0.2}, {}, {-2, 1, 0});
   std::mt19937_64 random(3);
   std::vector<core::BodyRecord> all;
   for (const double x : {0.0, 60.0, 120.0}) {
@@ -197,7 +194,7 @@ TEST_F(MovingStatics, GoWhereTheyAreSent) {
 }
 
 TEST_F(MovingStatics, GoBackWithTheWorld) {
-  add_box({2, 2, 0.25}, {0, 0, 0.2}).path = {{stop(0.5, {0, 0, 1}), stop(1, {0, 0, 0})}, true, true};
+  add_box({2, 2, 0.25}, {0, 0, 0.2}, core::StaticPath{{stop(0.5, {0, 0, 1}), stop(1, {0, 0, 0})}, true, true});
   std::mt19937_64 random(5);
   const std::vector<core::BodyRecord> all = pile(random, 1, 6, 0, 0);
   RegionWorld world(scene, settings);

@@ -67,8 +67,9 @@ TEST_P(PartSurfaces, OfTwoCompoundsBothPartsCount) {
     track.parts.push_back({core::Box{{2, 2, 0.5}}, {{x, 0, top - 0.5}, core::Quat::Identity()}, material});
   };
   piece(1, 0, kIce), piece(5, -0.005, std::nullopt);  // from x = -1 to 3, a little down, to 7
-  scene.statics.resize(1);
-  scene.statics[0].shape = static_cast<std::uint32_t>(scene.shapes.size() - 1);
+  core::StaticBody ground = scene.statics[0];
+  ground.shape = static_cast<std::uint32_t>(scene.shapes.size() - 1);
+  scene.statics = {ground};
   const double from_3 = way(1.2 * 0.6);
   const double stops_at = slides(scene);  // its middle: the brake grows while it comes over the seam
   EXPECT_GT(stops_at, 2.5 + from_3 - 0.2);

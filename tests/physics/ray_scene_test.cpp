@@ -92,10 +92,11 @@ TEST_F(Rays, AgreeWithTheWorldsOwn) {
 }
 
 TEST_F(Rays, MeetStaticsWhereTheyHaveGone) {
-  core::StaticBody& lift = scene_.statics.emplace_back();
+  core::StaticBody lift;
   lift.shape = scene_.prototypes[kBox].shape;
   lift.pose.p_WB = {5, 0, 5};
   lift.path = {{{1, {{0, 0, 3}, core::Quat::Identity()}}}, false, false};
+  scene_.statics.push_back(lift);
   RayScene rays(scene_, 1.0 / 60);
   const std::vector<core::Vec3> directions = {core::Vec3::UnitX()};
   const auto sees = [&](double z, core::Step step) {

@@ -92,8 +92,9 @@ TEST(Asks, AMeshIsAFileOrAHash) {
 
 TEST(Asks, AStaticHasANameOrANumber) {
   core::Scene scene;
-  scene.statics.resize(2);
-  scene.statics[1].name = "gate";
+  core::StaticBody gate;
+  gate.name = "gate";
+  scene.statics = {{}, gate};
   for (const Json& named : {Json("gate"), Json("1"), Json(1)}) {
     Ask ask = read_ask({{"kind", "move"}, {"static", named}}, MeshFiles::kAllowed);
     look_up_static(ask, scene);

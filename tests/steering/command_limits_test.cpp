@@ -52,8 +52,9 @@ class CommandLimits : public ::testing::Test {
 
 TEST_F(CommandLimits, AStaticIsSentWhereItCanGo) {
   launch_.scene.shapes.push_back({"ground", core::Plane{}});
-  launch_.scene.statics.resize(2);
-  launch_.scene.statics[1].shape = 1;
+  core::StaticBody plane;
+  plane.shape = 1;
+  launch_.scene.statics = {{}, plane};
   const core::Pose there{{1, 2, 3}, core::Quat::Identity()};
   EXPECT_EQ(problem(core::SendStatic{core::StaticId{0}, there, 2}), "");
   expect_refusal(core::SendStatic{core::StaticId{1}, there, 2}, "a plane cannot move");

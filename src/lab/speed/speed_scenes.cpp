@@ -139,13 +139,15 @@ SpeedScene heap_of_hulls(bool quick) {
 /// The stairs of the shipped scene, wide enough for `lanes` m and with a longer landing.
 void widen_stairs(core::Scene& scene, int lanes, int in_a_lane) {
   constexpr double kEdge_m = -4.5, kApart_m = 1.6;
-  for (core::StaticBody& part : scene.statics) {
+  for (std::size_t i = 0; i < scene.statics.size(); ++i) {
+    core::StaticBody part = scene.statics[i];
     auto* box = std::get_if<core::Box>(&scene.shapes[part.shape].shape);
     if (!box) continue;
     box->half_extents.y() = 0.5 * lanes + 2;
     if (part.name != "landing") continue;
     box->half_extents.x() = 0.5 * (kApart_m * in_a_lane + 1);
     part.pose.p_WB.x() = kEdge_m - box->half_extents.x();
+    scene.statics.set(i, part);
   }
 }
 
