@@ -33,6 +33,7 @@ BlockOwners::BlockOwners(const RegionMap& map, double side_m, double reach_m, do
     if (blocks.x0 >= blocks.x1 || blocks.y0 >= blocks.y1) {
       throw BadRegionMap("region " + std::to_string(i) + " has no block of " + std::to_string(side_m) + " m");
     }
+    blocks_.push_back(blocks);
     territories_.push_back(grown(blocks, reach_m));
     surroundings_.push_back(grown(territories_.back(), farther_m));
     interiors_.push_back(grown(blocks, -reach_m - farther_m - kApart_m));

@@ -19,6 +19,8 @@ class BlockOwners {
   bool owns(RegionId id, const Block& block) const {
     return map_.region(id).contains(side_m_ * (block.x + 0.5), side_m_ * (block.y + 0.5));
   }
+  /// The region's blocks.
+  const Rectangle& blocks(RegionId id) const { return blocks_.at(value_of(id)); }
   /// Where bodies of the region usually are. Bodies that extend beyond it are far.
   const Rectangle& territory(RegionId id) const { return territories_.at(value_of(id)); }
   /// The area that bodies of the region do not reach beyond in the next step. Where one may, its host says so before
@@ -32,7 +34,7 @@ class BlockOwners {
  private:
   RegionMap map_;
   double side_m_;
-  std::vector<Rectangle> territories_, surroundings_, interiors_;
+  std::vector<Rectangle> blocks_, territories_, surroundings_, interiors_;
 };
 
 /// How far bodies of a scene with these bounding radii usually extend beyond their blocks, m. Larger and faster ones

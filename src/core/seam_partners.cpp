@@ -4,10 +4,27 @@
 #include <numeric>
 
 namespace aurasim::core {
+namespace {
+
+/// Is there a corner of blocks of both regions and a third one? Rectangles that meet two by two have a common point.
+bool share_a_corner_with_a_third(const BlockOwners& owners, RegionId a, RegionId b) {
+  const auto meet = [&](RegionId x, RegionId y) { return owners.blocks(x).distance(owners.blocks(y)) == 0; };
+  if (!meet(a, b)) return false;
+  for (std::uint32_t i = 0; i < owners.size(); ++i) {
+    const RegionId third{i};
+    if (third != a && third != b && meet(a, third) && meet(b, third)) return true;
+  }
+  return false;
+}
+
+}  // namespace
 
 SeamPartners::SeamPartners(const BlockOwners& owners) : count_(owners.size()), parents_(count_) {
   for (std::uint32_t a = 0; a < count_; ++a) {
-    for (std::uint32_t b = 0; b < count_; ++b) are_near_.push_back(owners.are_near(RegionId{a}, RegionId{b}));
+    for (std::uint32_t b = 0; b < count_; ++b) {
+      are_near_.push_back(owners.are_near(RegionId{a}, RegionId{b}));
+      share_corners_.push_back(share_a_corner_with_a_third(owners, RegionId{a}, RegionId{b}));
+    }
   }
   begin({});
 }
@@ -21,7 +38,11 @@ void SeamPartners::begin(std::span<const Introduction> pairs) {
 }
 
 bool SeamPartners::are_partners(RegionId a, RegionId b) const {
-  return are_near_[value_of(a) * count_ + value_of(b)] || group(a) == group(b);
+  return are_near_[index(a, b)] || group(a) == group(b);
+}
+
+bool SeamPartners::may_share_chains(RegionId a, RegionId b) const {
+  return share_corners_[index(a, b)] || group(a) == group(b);
 }
 
 std::uint32_t SeamPartners::group(RegionId region) const {

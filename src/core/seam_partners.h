@@ -23,11 +23,17 @@ class SeamPartners {
   /// Do two regions exchange parcels in this step?
   bool are_partners(RegionId a, RegionId b) const;
 
+  /// May a chain of contacts in this step have bodies of both regions though no body of the one touches one of the
+  /// other? It may for regions that pairs connect, and for two of three or more that share a corner of blocks.
+  bool may_share_chains(RegionId a, RegionId b) const;
+
  private:
   std::uint32_t group(RegionId region) const;
+  std::size_t index(RegionId a, RegionId b) const { return value_of(a) * count_ + value_of(b); }
 
   std::size_t count_;
-  std::vector<bool> are_near_;          ///< by a * count_ + b
+  std::vector<bool> are_near_;          ///< by index(), as the next
+  std::vector<bool> share_corners_;     ///< with a third region
   std::vector<std::uint32_t> parents_;  ///< by region: another one of its group; itself for the first
 };
 

@@ -4,6 +4,7 @@
 #include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
+#include <LinearMath/btAabbUtil2.h>
 
 #include "core/region_map.h"
 
@@ -33,6 +34,7 @@ inline Bounds bounds_of(const btCollisionShape& shape, const btTransform& pose) 
 inline Bounds bounds_of(const btRigidBody& body) {
   return bounds_of(*body.getCollisionShape(), body.getWorldTransform());
 }
+inline bool overlap(const Bounds& a, const Bounds& b) { return TestAabbAgainstAabb2(a.low, a.high, b.low, b.high); }
 /// Do the box and the area overlap in the x-y plane?
 inline bool overlap(const Bounds& bounds, const core::Rectangle& area) {
   return bounds.low.x() <= area.x1 && bounds.high.x() >= area.x0 && bounds.low.y() <= area.y1 &&

@@ -24,6 +24,10 @@ struct Coupling {
   bool meets(core::RegionId other) const {
     return other != self && (partners == nullptr || partners->are_partners(self, other));
   }
+  /// See core::SeamPartners. Precondition: this region meets the other one.
+  bool may_share_chains(core::RegionId other) const {
+    return partners == nullptr || partners->may_share_chains(self, other);
+  }
 };
 
 /// Calls work(region) for each other region that exchanges parcels with this one in this step.

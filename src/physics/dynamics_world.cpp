@@ -169,6 +169,10 @@ void DynamicsWorld::forget_whether_they_touch(btTypedConstraint& joint) {
 
 void DynamicsWorld::couple(const Coupling& coupling) { bullet_->world->couple(coupling); }
 
+void DynamicsWorld::expect_contacts_with(std::span<const core::RegionId> regions) {
+  bullet_->world->expect_contacts_with(regions);
+}
+
 void DynamicsWorld::step(double substep_s) {
   const btScalar dt = static_cast<btScalar>(substep_s);
   bullet_->world->stepSimulation(dt, /*maxSubSteps=*/0, dt);

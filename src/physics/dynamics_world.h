@@ -66,6 +66,8 @@ class DynamicsWorld {
 
   /// See RegionWorld::couple().
   void couple(const Coupling& coupling);
+  /// See World in physics/stepper.h.
+  void expect_contacts_with(std::span<const core::RegionId> regions);
 
   void step(double substep_s);
 

@@ -106,12 +106,14 @@ class Simulation {
   void meet_neighbours();
   bool is_to_be_watched(const HostedBody& body) const;
   void meet_far();
+  void find_seams();
   bool may_be_in_chains(const HostedBody& body, double way_m) const;
   void find_reached(const HostedBody& body, double way_m, std::vector<core::RegionId>& reached) const;
   void check_partners(const Bounds& reach) const;
   void post(core::RegionId to, const Halo& halo);
   Halo fetch(core::RegionId from);
   Bounds reach_of(const btRigidBody& body) const;
+  Bounds around_reach_of(const btRigidBody& body) const;
   Visit visit_of(const HostedBody& body) const;
   core::RegionId host_of(const HostedBody& body) const;
   std::vector<core::ClusterState> hand_over(std::span<const std::span<const core::BodyId>> clusters);
@@ -121,7 +123,7 @@ class Simulation {
   void part_from(core::BodyId id);
   void restore_later(const core::ClusterState& cluster, std::span<const std::uint32_t> records);
   void restore_late_contacts();
-  void send_guests_home();
+  void send_home(std::span<const core::BodyId> guests_before);
   void find_shown();
   std::uint32_t shown_at(std::size_t place) const {
     return shown_at_.empty() ? static_cast<std::uint32_t>(place) : shown_at_[place];
@@ -236,7 +238,14 @@ class Simulation {
   std::unique_ptr<Coupling> coupling_;  ///< null: this world is not coupled with others
   std::vector<core::BodyId> broken_;    ///< bodies that broke down in the present state
   WatchedBodies watched_;
-  std::uint64_t meeting_ = 0;  ///< number of the last meet_neighbours()
+  /// A body that this region hosts, and what it may touch in the step.
+  struct AtBorder {
+    core::BodyId id;
+    Bounds reach;
+  };
+  std::vector<AtBorder> at_border_;   ///< bodies outside of the interior that this region has kept at the last meeting
+  std::vector<core::BodyId> guests_;  ///< of the last meeting
+  std::uint64_t meeting_ = 0;         ///< number of the last meet_neighbours()
   ParcelWriter parcel_;
   std::vector<Moved> arrived_, left_;
   core::ClusterState late_contacts_;  ///< contacts with bodies of other regions that are not here yet

@@ -9,8 +9,6 @@
 #include <string>
 #include <utility>
 
-#include <LinearMath/btAabbUtil2.h>
-
 #include "core/keep_one_of_each.h"
 #include "physics/bounds.h"
 #include "physics/bullet_convert.h"
@@ -19,11 +17,6 @@
 #include "physics/simulation.h"
 
 namespace aurasim::physics {
-namespace {
-
-bool overlap(const Bounds& a, const Bounds& b) { return TestAabbAgainstAabb2(a.low, a.high, b.low, b.high); }
-
-}  // namespace
 
 void Simulation::couple(const Coupling& coupling) {
   coupling_ = std::make_unique<Coupling>(coupling);
@@ -47,6 +40,17 @@ Bounds Simulation::reach_of(const btRigidBody& body) const {
   return bounds;
 }
 
+/// A box around reach_of(), which takes less time.
+Bounds Simulation::around_reach_of(const btRigidBody& body) const {
+  const btScalar step_s = scalar(settings_.step_s);
+  const btVector3 pull = to_bullet(scene_->gravity) + body.getInvMass() * body.getTotalForce();
+  const btScalar radius_m = scalar(place_of(body).radius_m + 2 * kReachSlack_m);
+  const btVector3 around = step_s * body.getLinearVelocity().absolute() + step_s * step_s / 2 * pull.absolute() +
+                           btVector3(radius_m, radius_m, radius_m);
+  const btVector3& p_WB = body.getWorldTransform().getOrigin();
+  return {p_WB - around, p_WB + around};
+}
+
 Visit Simulation::visit_of(const HostedBody& body) const {
   return {body.record(), host_of(body), from_bullet(body.rigid->getTotalForce()),
           from_bullet(body.rigid->getTotalTorque())};
@@ -66,14 +70,16 @@ void Simulation::meet_neighbours() {
   broken_.clear();
   arrived_.clear();
   left_.clear();
+  at_border_.clear();
+  const std::vector<core::BodyId> guests_before = std::exchange(guests_, {});
   std::map<core::RegionId, std::vector<core::BodyId>> leaving;
   std::vector<Visit> guests;  // of this region
   watched_.add(notes_.for_borders, table_);
-  watched_.keep(table_, [this](const HostedBody& body) { return is_to_be_watched(body); });
-  watched_.for_each(table_, [&](const HostedBody& body) {
-    if (is_guest(*body.rigid)) return;
+  const auto tell_of = [&](const HostedBody& body) {
     const core::RegionId host = host_of(body);
-    if (host != coupling_->self) {
+    const bool is_ours = host == coupling_->self;
+    if (is_ours && is_within(around_reach_of(*body.rigid), coupling_->owners->interior(host))) return;
+    if (!is_ours) {
       expect_to_meet(*coupling_, host);
       leaving[host].push_back(body.id);
       guests.push_back(visit_of(body));
@@ -81,11 +87,17 @@ void Simulation::meet_neighbours() {
       halos[host].arrivals.push_back(guests.back());
     }
     const Bounds reach = reach_of(*body.rigid);
-    if (host == coupling_->self && is_within(reach, coupling_->owners->interior(host))) return;
+    if (is_ours && is_within(reach, coupling_->owners->interior(host))) return;
+    if (is_ours) at_border_.push_back({body.id, reach});
     for (auto& [peer, halo] : halos) {
       if (peer != host && overlap(reach, coupling_->owners->territory(peer))) halo.guests.push_back(visit_of(body));
     }
     check_partners(reach);
+  };
+  watched_.keep(table_, [&](const HostedBody& body) {
+    if (!is_to_be_watched(body)) return false;
+    if (!is_guest(*body.rigid)) tell_of(body);
+    return true;
   });
   std::vector<std::span<const core::BodyId>> clusters;
   for (const auto& [host, ids] : leaving) clusters.emplace_back(ids);
@@ -113,7 +125,9 @@ void Simulation::meet_neighbours() {
   for (const core::ClusterState& cluster : left) restore_contacts(cluster);
   meet_far();
   restore_late_contacts();
-  send_guests_home();
+  core::keep_one_of_each(guests_);
+  send_home(guests_before);
+  find_seams();
 }
 
 /// Throws std::logic_error unless this region exchanges parcels with all regions whose territory a body may reach.
@@ -155,13 +169,17 @@ void Simulation::meet_far() {
   };
   const core::BlockOwners& owners = *coupling_->owners;
   std::vector<Far> far;
-  watched_.add(notes_.for_borders, table_);
-  watched_.for_each(table_, [&](const HostedBody& body) {
-    if (!body.born || (is_guest(*body.rigid) && place_of(*body.rigid).met != meeting_)) return;
-    const core::RegionId host = is_guest(*body.rigid) ? place_of(*body.rigid).host : coupling_->self;
-    const Bounds reach = reach_of(*body.rigid);
-    if (!is_within(reach, owners.territory(host))) far.push_back({body.id, host, reach});
-  });
+  for (const AtBorder& body : at_border_) {
+    if (!is_within(body.reach, owners.territory(coupling_->self))) far.push_back({body.id, coupling_->self, body.reach});
+  }
+  const auto look_at = [&](core::BodyId id, core::RegionId host) {
+    const btRigidBody& body = *table_.find(id)->rigid;
+    if (is_within(around_reach_of(body), owners.territory(host))) return;
+    const Bounds reach = reach_of(body);
+    if (!is_within(reach, owners.territory(host))) far.push_back({id, host, reach});
+  };
+  for (const Moved& arrived : arrived_) look_at(arrived.body.id, coupling_->self);
+  for (const core::BodyId id : guests_) look_at(id, place_of(*table_.find(id)->rigid).host);
   std::map<core::RegionId, Halo> answers;
   std::vector<core::RegionId> expected;
   for (const Far& one : far) {
@@ -280,6 +298,7 @@ void Simulation::take_guests(std::vector<Visit>& visits) {
     btRigidBody& body = *table_.find(visit.body.id)->rigid;
     BodyPlace& place = place_of(body);
     place.host = visit.host, place.met = meeting_;
+    guests_.push_back(visit.body.id);
     push(body, visit);
   }
 }
@@ -292,12 +311,14 @@ void Simulation::part_from(core::BodyId id) {
   drop_guests({&id, 1});
 }
 
-/// Removes the guests that no longer come near.
-void Simulation::send_guests_home() {
+/// Removes those of earlier guests that no longer come near.
+void Simulation::send_home(std::span<const core::BodyId> guests_before) {
   std::vector<core::BodyId> gone;
-  watched_.for_each(table_, [&](const HostedBody& body) {
-    if (is_guest(*body.rigid) && place_of(*body.rigid).met != meeting_) gone.push_back(body.id);
-  });
+  std::size_t near = 0;
+  for (const core::BodyId id : guests_before) {
+    const HostedBody* const body = table_.find(id, near);
+    if (body != nullptr && is_guest(*body->rigid) && place_of(*body->rigid).met != meeting_) gone.push_back(id);
+  }
   drop_guests(gone);
 }
 

@@ -8,6 +8,8 @@
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
+#include "core/ids.h"
+
 namespace aurasim::physics {
 
 class ContactImpulses;
@@ -48,6 +50,8 @@ class World : public btDiscreteDynamicsWorld {
   virtual void add_contacts_of_moved(std::vector<std::pair<int, int>>&) const {}
   /// See RegionWorld::couple(). Throws std::invalid_argument if the solver cannot.
   virtual void couple(const Coupling& coupling);
+  /// Names the regions that may have contacts in common with this one in the next step. Precondition: couple().
+  virtual void expect_contacts_with(std::span<const core::RegionId>) {}
 };
 
 std::unique_ptr<World> make_stepper(const WorldParts& parts, const Settings& settings);

@@ -40,5 +40,20 @@ TEST(SeamPartners, AreAllThatPairsConnectForOneStep) {
   EXPECT_FALSE(partners.are_partners(kColumn0, kColumn2));
 }
 
+/// Around a corner of four regions, a chain of contacts may go from one to another by way of a third.
+TEST(SeamPartners, ShareChainsOnlyAroundACornerWithAThirdOrWherePairsSay) {
+  const BlockOwners row(RegionMap::columns(3, 16), 16, 1), grid(RegionMap::grid(2, 3, 16, 16), 16, 1);
+  SeamPartners in_row(row);
+  EXPECT_FALSE(in_row.may_share_chains(kColumn0, kColumn1));
+  const std::vector<Introduction> pairs = {{kColumn0, kColumn1}};
+  in_row.begin(pairs);
+  EXPECT_TRUE(in_row.may_share_chains(kColumn0, kColumn1));
+  EXPECT_FALSE(in_row.may_share_chains(kColumn1, kColumn2));
+  const SeamPartners in_grid(grid);
+  EXPECT_TRUE(in_grid.may_share_chains(RegionId{0}, RegionId{1}));
+  EXPECT_TRUE(in_grid.may_share_chains(RegionId{0}, RegionId{4}));
+  EXPECT_FALSE(in_grid.may_share_chains(RegionId{0}, RegionId{5}));
+}
+
 }  // namespace
 }  // namespace aurasim::core

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <numeric>
+#include <stdexcept>
+#include <string>
 #include <tuple>
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>
@@ -23,21 +25,29 @@ SoftPlace place(const btRigidBody& body, double block_m) {
   return soft_place(from_bullet(body.getWorldTransform().getOrigin()), place.block, place.radius_m, block_m);
 }
 
+/// The two regions would wait for each other, or solve the contact differently.
+[[noreturn]] void throw_unexpected(const btRigidBody& a, const btRigidBody& b) {
+  throw std::logic_error("bodies " + std::to_string(core::value_of(place_of(a).id)) + " and " +
+                         std::to_string(core::value_of(place_of(b).id)) +
+                         " touch, and were not expected to reach each other in this step");
+}
+
 }  // namespace
 
+bool SoftShared::is_expected(core::RegionId region) const {
+  return std::ranges::find(peers_, region) != peers_.end();
+}
+
 std::vector<core::RegionId> SoftShared::audience(const btRigidBody& body, SoftPhase phase) const {
+  if (phase == SoftPhase::kGiants) return peers_;
   std::vector<core::RegionId> regions;
-  if (phase == SoftPhase::kGiants) {
-    for_each_peer(coupling_, [&](core::RegionId peer) { regions.push_back(peer); });
-    return regions;
-  }
   const core::Block corner = place(body, block_m_).corner;
   for (const core::Block& block : {core::Block{corner.x - 1, corner.y - 1}, core::Block{corner.x, corner.y - 1},
                                    core::Block{corner.x - 1, corner.y}, corner}) {
     const core::RegionId region = coupling_.owners->owner(block);
     if (region == coupling_.self || std::ranges::find(regions, region) != regions.end()) continue;
     expect_to_meet(coupling_, region);
-    regions.push_back(region);
+    if (is_expected(region)) regions.push_back(region);
   }
   return regions;
 }
@@ -108,7 +118,7 @@ bool SoftShared::meet(SoftContacts& contacts, SoftIslands& islands) {
     std::vector<std::pair<const SoftTouch*, SoftPhase>> touches;
   };
   std::map<core::RegionId, Told> told;
-  for_each_peer(coupling_, [&](core::RegionId peer) { told[peer]; });
+  for (const core::RegionId peer : peers_) told[peer];
   for (const SoftTouch& touch : contacts.touches()) {
     if (touch.a < 0 || touch.b < 0 || !touch.acts) continue;
     const btRigidBody* const ends[2] = {&islands.body_at(touch.slot_a), &islands.body_at(touch.slot_b)};
@@ -121,7 +131,7 @@ bool SoftShared::meet(SoftContacts& contacts, SoftIslands& islands) {
       if (phase == SoftPhase::kEdges)
         touched.across = is_guest(*ends[1 - i]) ? place_of(*ends[1 - i]).host : coupling_.self;
       if (!is_guest(*ends[i])) continue;
-      expect_to_meet(coupling_, place_of(*ends[i]).host);
+      if (!is_expected(place_of(*ends[i]).host)) throw_unexpected(*ends[0], *ends[1]);
       told[place_of(*ends[i]).host].bodies.push_back(ends[1 - i]);
     }
     if (phase == SoftPhase::kEdges) continue;
@@ -164,7 +174,7 @@ bool SoftShared::meet(SoftContacts& contacts, SoftIslands& islands) {
   }
   foreign_.clear();
   foreign_patches_.clear();
-  for_each_peer(coupling_, [&](core::RegionId peer) { read(peer); });
+  for (const core::RegionId peer : peers_) read(peer);
   bool any_woken = false;
   for (btRigidBody* body : islands.guests()) {
     const auto known = foreign_.find(place_of(*body).id);

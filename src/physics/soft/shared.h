@@ -30,6 +30,9 @@ class SoftShared final : public SoftExchange {
  public:
   SoftShared(const Coupling& coupling, double block_m) : coupling_(coupling), block_m_(block_m) {}
 
+  /// Names the regions that may have contacts in common with this one in the step. No other region is told of contacts.
+  void expect(std::span<const core::RegionId> regions) { peers_.assign(regions.begin(), regions.end()); }
+
   /// Tells the other regions which of the bodies that touch guests at their homes are in parts that stir, and learns
   /// the same of guests. Call between SoftIslands::find_parts() and SoftIslands::settle().
   void tell_stirs(SoftIslands& islands);
@@ -122,6 +125,7 @@ class SoftShared final : public SoftExchange {
     const Chain* around_corner = nullptr;  ///< if we solve it: the chain of phase kCorners that the body is in
   };
 
+  bool is_expected(core::RegionId region) const;
   SoftPhase phase_of(const btRigidBody& a, const btRigidBody& b) const;
   /// The regions that have to know a contact of phase kCorners or kGiants.
   std::vector<core::RegionId> audience(const btRigidBody& body, SoftPhase phase) const;
@@ -142,6 +146,7 @@ class SoftShared final : public SoftExchange {
 
   Coupling coupling_;
   double block_m_;
+  std::vector<core::RegionId> peers_;  ///< those of expect()
   std::map<core::BodyId, Foreign> foreign_;
   std::vector<ForeignPatch> foreign_patches_;
   std::vector<Touched> touched_;              ///< by slot in SoftIslands

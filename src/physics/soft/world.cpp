@@ -90,6 +90,7 @@ class SoftWorld final : public World {
   void forget_past() override { islands_.forget_past(); }
 
   void couple(const Coupling& coupling) override { shared_.emplace(coupling, settings_.block_m); }
+  void expect_contacts_with(std::span<const core::RegionId> regions) override { shared_->expect(regions); }
 
   bool knows_moved() const override { return true; }
   std::span<btRigidBody* const> moved() const override { return moved_; }
