@@ -37,9 +37,7 @@ void SeamPartners::begin(std::span<const Introduction> pairs) {
   }
 }
 
-bool SeamPartners::are_partners(RegionId a, RegionId b) const {
-  return are_near_[index(a, b)] || group(a) == group(b);
-}
+bool SeamPartners::are_partners(RegionId a, RegionId b) const { return are_near_[index(a, b)] || group(a) == group(b); }
 
 bool SeamPartners::may_share_chains(RegionId a, RegionId b) const {
   return share_corners_[index(a, b)] || group(a) == group(b);

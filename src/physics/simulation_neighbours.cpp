@@ -170,7 +170,8 @@ void Simulation::meet_far() {
   const core::BlockOwners& owners = *coupling_->owners;
   std::vector<Far> far;
   for (const AtBorder& body : at_border_) {
-    if (!is_within(body.reach, owners.territory(coupling_->self))) far.push_back({body.id, coupling_->self, body.reach});
+    if (!is_within(body.reach, owners.territory(coupling_->self)))
+      far.push_back({body.id, coupling_->self, body.reach});
   }
   const auto look_at = [&](core::BodyId id, core::RegionId host) {
     const btRigidBody& body = *table_.find(id)->rigid;

@@ -40,8 +40,8 @@ bool any_overlap(std::span<const Bounds> ours, std::vector<Bounds> theirs) {
 
 }  // namespace
 
-/// If a body that this region hosts may touch a guest, its host knows both, and what they may touch. So the other region
-/// finds the same. Chains of contacts over several regions need more.
+/// If a body that this region hosts may touch a guest, its host knows both, and what they may touch. So the other
+/// region finds the same. Chains of contacts over several regions need more.
 void Simulation::find_seams() {
   std::vector<Bounds> ours;
   std::map<core::RegionId, std::vector<Bounds>> theirs;

@@ -34,9 +34,7 @@ SoftPlace place(const btRigidBody& body, double block_m) {
 
 }  // namespace
 
-bool SoftShared::is_expected(core::RegionId region) const {
-  return std::ranges::find(peers_, region) != peers_.end();
-}
+bool SoftShared::is_expected(core::RegionId region) const { return std::ranges::find(peers_, region) != peers_.end(); }
 
 std::vector<core::RegionId> SoftShared::audience(const btRigidBody& body, SoftPhase phase) const {
   if (phase == SoftPhase::kGiants) return peers_;
