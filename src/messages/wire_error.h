@@ -12,8 +12,8 @@
 
 namespace aurasim::messages {
 
-/// The number that every message carries. Changes with any change of idl/.
-inline constexpr std::uint16_t kProtocolVersion = 22;
+/// The number that every message carries. Changes with any change of idl/, and of which messages nodes wait for.
+inline constexpr std::uint16_t kProtocolVersion = 23;
 
 /// Bodies, manifolds, ... in one message; more are refused.
 inline constexpr std::size_t kMaxRows = 1'000'000;
