@@ -115,7 +115,7 @@ void StaticList::push_back(const StaticBody& body) {
     last_.names += body.name;
     last_.named.push_back({record, static_cast<std::uint32_t>(last_.names.size())});
   }
-  if (body.path || !same_bits(Quat(0, body.belt_S.x(), body.belt_S.y(), body.belt_S.z()), Quat(0, 0, 0, 0))) {
+  if (body.path || body.belt_S != Vec3::Zero()) {
     last_.moving.push_back({record, body.path, body.belt_S});
   }
   last_.records.push_back({body.pose.p_WB, kind_of(body, last_)});

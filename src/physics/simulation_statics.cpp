@@ -27,7 +27,8 @@ void Simulation::make_moving(std::uint32_t index, bool goes) {
   if (!settings_.looks_once()) {
     throw std::invalid_argument(scene_->statics[index].name + " moves, which this solver does not know");
   }
-  const MovingStatic& made = *moving_statics_.insert(place, {index, scene_->statics[index], std::make_unique<Belt>(), goes});
+  const MovingStatic& made =
+      *moving_statics_.insert(place, {index, scene_->statics[index], std::make_unique<Belt>(), goes});
   btRigidBody& fixed = statics_.hold_always(index);
   physics::make_moving(fixed, *made.belt);
   if (statics_.is_in(index)) world_.begin_moving(fixed);

@@ -202,7 +202,7 @@ class StartOfScene {
 
   const config::Launch& launch_;
   core::Scene scene_;
-  std::vector<std::uint32_t> planes_, convex_statics_;       ///< statics
+  std::vector<std::uint32_t> planes_, convex_statics_;     ///< statics
   std::map<std::uint32_t, core::PrototypeId> prototypes_;  ///< of bodies with the shapes of convex statics, by shape
   core::BoxTree bodies_, statics_;
   std::vector<bool> overlapping_;  ///< bodies that are named in a warning, or counted beyond the limit

@@ -1,4 +1,5 @@
-// Long lists of a scene file are packed (config/packed_nodes.h). What is read, and what is refused where, stays the same.
+// Long lists of a scene file are packed (config/packed_nodes.h). What is read, and what is refused where, stays the
+// same.
 #include "config/packed_nodes.h"
 
 #include <fstream>
@@ -100,7 +101,8 @@ TEST_F(PackedLists, AnEntryCanBeChanged) {
 TEST_F(PackedLists, TakeLittleMemory) {
   constexpr int kEntries = 20'000;
   std::string text = "list:\n";
-  for (int i = 0; i < kEntries; ++i) text += fmt::format("  - {{shape: tile, material: ground, position: [{}, 4, 0]}}\n", i);
+  for (int i = 0; i < kEntries; ++i)
+    text += fmt::format("  - {{shape: tile, material: ground, position: [{}, 4, 0]}}\n", i);
   const auto in_use = [] { return mallinfo2().uordblks + mallinfo2().hblkhd; };
   const std::filesystem::path file = file_of(text);
   const std::size_t before = in_use();
@@ -126,12 +128,14 @@ TEST(SceneFile, OverridesReachIntoLongLists) {
   const Workspace workspace;
   std::string text = "statics:\n";
   for (int i = 0; i < 200; ++i) text += "  - {shape: {box: {size: [1, 1, 1]}}, position: [0, 0, 0]}\n";
-  const core::Scene scene = workspace.scene(text, {"scene.statics.150.position=[1, 2, 3]", "scene.statics[9].name=nine"});
+  const core::Scene scene =
+      workspace.scene(text, {"scene.statics.150.position=[1, 2, 3]", "scene.statics[9].name=nine"});
   EXPECT_EQ(scene.statics.pose(150).p_WB, core::Vec3(1, 2, 3));
   EXPECT_EQ(scene.statics.pose(149).p_WB, core::Vec3(0, 0, 0));
   EXPECT_EQ(scene.statics.find("nine"), 9U);
-  expect_errors(workspace.scene_errors(text, {"scene.statics.200.name=none"}),
-                {"--set scene.statics.200.name=none: statics.200.name: found \"200\", allowed: an index from 0 to 199"});
+  expect_errors(
+      workspace.scene_errors(text, {"scene.statics.200.name=none"}),
+      {"--set scene.statics.200.name=none: statics.200.name: found \"200\", allowed: an index from 0 to 199"});
 }
 
 }  // namespace

@@ -40,7 +40,8 @@ void expect_same(const StaticBody& a, const StaticBody& b) {
   EXPECT_EQ(a.path->repeats, b.path->repeats);
   EXPECT_EQ(a.path->smooth, b.path->smooth);
   ASSERT_EQ(a.path->stops.size(), b.path->stops.size());
-  for (std::size_t i = 0; i < a.path->stops.size(); ++i) EXPECT_EQ(bits(a.path->stops[i].X_SP), bits(b.path->stops[i].X_SP));
+  for (std::size_t i = 0; i < a.path->stops.size(); ++i)
+    EXPECT_EQ(bits(a.path->stops[i].X_SP), bits(b.path->stops[i].X_SP));
 }
 
 /// Statics of all kinds: with and without name, path and belt, turned or not, and with -0.

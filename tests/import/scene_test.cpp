@@ -168,7 +168,7 @@ TEST(Scene, EachShapeOfABodyHasItsOwnSurface) {
 
 TEST(Scene, FrictionAndRestitutionOfTwoEqualSurfacesAreThoseOfTheFile) {
   const core::Scene scene = scene_of(model_of("shapes.sdf"));
-  const core::Material& ground = scene.materials[scene.statics.front().material];
+  const core::Material& ground = scene.materials[scene.statics[0].material];
   EXPECT_NEAR(ground.friction * ground.friction, 0.49, 1e-12);
   EXPECT_NEAR(ground.restitution * ground.restitution, 0.25, 1e-12);
   EXPECT_EQ(scene.gravity.z(), -3.7);

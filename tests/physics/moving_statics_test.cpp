@@ -145,8 +145,9 @@ TEST_F(MovingStatics, AreNotForOtherSolvers) {
 /// Some of the bodies are handed to another world on the way, late, and computed up to where that one is.
 TEST_F(MovingStatics, HaveTheSameBitsWhoeverComputesThem) {
   add_box({2, 2, 0.25}, {0, 0, 0.2}, core::StaticPath{{stop(0.7, {0, 0, 1}), stop(1.4, {0, 0, 0})}, true, true});
-  add_box({0.2, 3, 0.5}, {60, 0, 0.6}, core::StaticPath{
-      {stop(1, Vec3::Zero(), yaw(2)), stop(2, Vec3::Zero(), yaw(4)), stop(3, Vec3::Zero())}, true, false});
+  add_box({0.2, 3, 0.5}, {60, 0, 0.6},
+          core::StaticPath{
+              {stop(1, Vec3::Zero(), yaw(2)), stop(2, Vec3::Zero(), yaw(4)), stop(3, Vec3::Zero())}, true, false});
   add_box({3, 2, 0.2}, {120, 0, 0.2}, {}, {-2, 1, 0});
   std::mt19937_64 random(3);
   std::vector<core::BodyRecord> all;
