@@ -32,7 +32,7 @@ Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const
       orders_(settings.last_order),
       hops_across_(hops_across(map, settings.neighbour_distance_m)),
       listening_(vicinity_, intake_, settings.aura.lookahead, settings.start, settings.related,
-                 settings.sync != SyncMode::kFreeRunning),
+                 settings.listening_ends && settings.sync != SyncMode::kFreeRunning),
       introducer_(*aura_, vicinity_),
       gathers_(settings.redo > 0),
       check_(*aura_, vicinity_, settings.start),

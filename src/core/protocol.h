@@ -42,6 +42,7 @@ struct ProtocolSettings {
   Step resend_after_steps = 120;       ///< an unacknowledged hand-off is sent again every so often
   std::vector<TogetherPair> together;  ///< a < b, ascending
   std::vector<Listened> related;       ///< regions, besides those near us, that listen from the start
+  bool listening_ends = true;          ///< false: regions that have been introduced listen to each other for ever
 };
 
 struct Changes {

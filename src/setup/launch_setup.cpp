@@ -84,6 +84,7 @@ node::NodeSetup node_setup(const config::Launch& launch, core::RegionId region, 
   setup.protocol.sync = launch.time.sync;
   setup.protocol.aura = aura_rules(launch);
   setup.protocol.neighbour_distance_m = listening_distance_m(launch);
+  setup.protocol.listening_ends = launch.dds.security.empty();  // docs/decisions/0059-listening-ends.md
   setup.physics = physics_settings(launch);
   setup.control = launch.control_rules();
   if (!launch.control.replay.empty()) setup.recorded = records::read_setpoints(launch.control.replay);
