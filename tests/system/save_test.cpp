@@ -102,7 +102,8 @@ TEST_F(SavedWorlds, ThatNobodyAskedForAreLoadedFromTheirParts) {
                             overrides_of("") + set({"time.pace=none"}));
   expect_exit(run, 0);
   const std::set<std::int64_t> states = saved_states();
-  ASSERT_EQ(states.size(), 3U) << "the newest three";
+  // A node that has ended before it knew that the last one is whole has not removed the oldest.
+  ASSERT_TRUE(states.size() == 3 || states.size() == 4) << "the newest three: " << ::testing::PrintToString(states);
   const std::int64_t step = *states.rbegin();
   Hashes wanted = hashes("run");
   wanted.erase(wanted.begin(), wanted.find(step));
