@@ -115,7 +115,6 @@ const std::vector<Introduction>& Introducer::look(const ForeignBodies& foreign, 
   }
   guests_.for_each_meeting([this](RegionId a, RegionId b) { return may_introduce(a, b); },
                            [this](RegionId a, RegionId b) { introduce(a, b); });
-  guests_.for_each([this](RegionId host) { introduce(host, vicinity_.self); });
   sort_out(found_);
   return found_;
 }

@@ -21,11 +21,6 @@ class HostsReaches {
  public:
   void clear() { bodies_.clear(); }
   void add(RegionId host, const Rectangle& reach) { bodies_.push_back({host, reach}); }
-  /// Calls visit(host) for the host of each body.
-  template <class Visit>
-  void for_each(Visit&& visit) const {
-    for (const Reach& body : bodies_) visit(body.host);
-  }
   /// Calls visit(a, b), a < b, for each two hosts of which bodies may come together, if is_wanted(a, b).
   template <class IsWanted, class Visit>
   void for_each_meeting(IsWanted&& is_wanted, Visit&& visit);

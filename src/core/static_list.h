@@ -64,7 +64,7 @@ class StaticList {
  private:
   static constexpr std::size_t kOfBlock = 1024;
 
-  /// What many statics have in common.
+  /// Shape, material and rotation, which many statics have in common.
   struct Kind {
     std::uint32_t shape = 0;
     std::uint32_t material = 0;

@@ -48,7 +48,7 @@ class HeartbeatLimit {
   static constexpr Time kSilence = std::chrono::milliseconds(5), kLongestSilence = std::chrono::milliseconds(200);
   /// A silent writer asks again after twice as long each time, up to this: who does not answer has no processor now.
   static constexpr Time kLongestPause = std::chrono::milliseconds(500);
-  /// What a reader lacks so soon after its first answer was sent before it knew the writer, and is no loss.
+  /// Samples that a reader lacks so soon after its first answer were sent before it knew the writer, and are no loss.
   static constexpr Time kNew = std::chrono::seconds(2);
   /// After a loss all heartbeats are sent for so long: where one sample was lost, others will be.
   static constexpr Time kAfterLoss = std::chrono::seconds(10);

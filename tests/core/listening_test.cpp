@@ -113,7 +113,7 @@ TEST_P(Agreement, BothSidesListenInTheSameStates) {
   EXPECT_GE(changes, 2) << "or nothing was tested";
 }
 
-/// What a side answers of a state is the same whenever it is asked, so it does not matter who is further.
+/// A side answers the same of a state whenever it is asked, so it does not matter which side is further.
 TEST_P(Agreement, DoesNotDependOnWhenItIsAsked) {
   std::mt19937 random(static_cast<unsigned>(GetParam()));
   const auto up_to = [&](int most) { return std::uniform_int_distribution<int>(0, most)(random); };

@@ -123,7 +123,7 @@ TEST_F(AHeartbeatLimit, TakesNothingForALossThatANewReaderLacks) {
   EXPECT_TRUE(asks()) << "now it is a loss";
 }
 
-/// Who does not answer has no processor now, and many heartbeats would only take it from others.
+/// A reader that does not answer has no processor now, and many heartbeats would only take it from others.
 TEST_F(AHeartbeatLimit, AsksASilentReaderLessAndLessOften) {
   int asked = 0;
   const auto end = now_ + 10s;

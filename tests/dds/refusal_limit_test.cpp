@@ -1,4 +1,4 @@
-// What is reported of refusals when there are many.
+// RefusalLimit reports some of many refusals, and each participant that is refused.
 #include "dds/refusal_limit.h"
 
 #include <gtest/gtest.h>

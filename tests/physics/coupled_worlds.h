@@ -14,6 +14,15 @@
 
 namespace aurasim::physics::testing {
 
+inline Settings soft_step_with_blocks(double block_m) {
+  Settings settings;
+  settings.solver = Solver::kSoftStep;
+  settings.continuous = true;
+  settings.block_m = block_m;
+  settings.top_speed_m_s = 10;
+  return settings;
+}
+
 class CoupledWorlds {
  public:
   CoupledWorlds(const core::Scene& scene, const Settings& settings, const core::RegionMap& map,

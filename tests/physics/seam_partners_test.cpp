@@ -12,15 +12,6 @@ using core::Vec3;
 
 constexpr double kWidth_m = 8;  // of a column, and of a block
 
-Settings soft_columns() {
-  Settings settings;
-  settings.solver = Solver::kSoftStep;
-  settings.continuous = true;
-  settings.block_m = kWidth_m;
-  settings.top_speed_m_s = 10;
-  return settings;
-}
-
 /// Small balls, and a long and flat box.
 core::Scene small_and(const core::Vec3& size_m) {
   core::Scene scene = scene_of(core::Sphere{0.25});
@@ -50,8 +41,8 @@ std::vector<BodyRecord> balls_over_borders(int columns) {
 /// Number of parcels in 60 states.
 std::size_t parcels_of(int columns) {
   const core::Scene scene = small_and({1, 1, 1});
-  CoupledWorlds many(scene, soft_columns(), RegionMap::columns(static_cast<std::size_t>(columns), kWidth_m),
-                     balls_over_borders(columns));
+  CoupledWorlds many(scene, soft_step_with_blocks(kWidth_m),
+                     RegionMap::columns(static_cast<std::size_t>(columns), kWidth_m), balls_over_borders(columns));
   for (int i = 0; i < 60; ++i) many.step();
   EXPECT_FALSE(many.have_met(0, 2));
   return many.parcels();
@@ -69,10 +60,11 @@ struct Row {
   int columns;
 
   CoupledWorlds worlds() const {
-    return {scene, soft_columns(), RegionMap::columns(static_cast<std::size_t>(columns), kWidth_m), bodies};
+    return {scene, soft_step_with_blocks(kWidth_m), RegionMap::columns(static_cast<std::size_t>(columns), kWidth_m),
+            bodies};
   }
   RegionWorld one() const {
-    RegionWorld world(scene, soft_columns());
+    RegionWorld world(scene, soft_step_with_blocks(kWidth_m));
     world.add(bodies);
     return world;
   }

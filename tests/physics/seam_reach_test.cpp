@@ -16,15 +16,6 @@ using core::Vec3;
 
 constexpr double kBlock_m = 8, kRadius_m = 0.25;
 
-Settings settings_with_block() {
-  Settings settings;
-  settings.solver = Solver::kSoftStep;
-  settings.continuous = true;
-  settings.block_m = kBlock_m;
-  settings.top_speed_m_s = 10;
-  return settings;
-}
-
 core::Scene balls() {
   core::Scene scene = scene_of(core::Sphere{kRadius_m});
   for (core::Prototype& kind : scene.prototypes) kind.can_sleep = false;
@@ -38,7 +29,9 @@ BodyRecord ball(std::uint64_t id, double x, double y, double z = kRadius_m, cons
 /// Worlds of several regions beside the one world that they have to be.
 struct Beside {
   Beside(const RegionMap& map, std::vector<BodyRecord> some)
-      : bodies(std::move(some)), one(scene, settings_with_block()), many(scene, settings_with_block(), map, bodies) {
+      : bodies(std::move(some)),
+        one(scene, soft_step_with_blocks(kBlock_m)),
+        many(scene, soft_step_with_blocks(kBlock_m), map, bodies) {
     one.add(bodies);
   }
 
@@ -69,7 +62,7 @@ TEST(SeamReach, BodiesThatTouchOverTheBorderAreToldOf) {
   for (int i = 0; i < 30; ++i) EXPECT_GT(worlds.step(), kHalos);
 }
 
-/// It hits in the middle of a state: its way in the step counts, not where it is.
+/// The ball hits in the middle of a state: its way in the step counts, not where it is.
 TEST(SeamReach, AFastBodyIsToldOfInTheStateInWhichItHits) {
   for (const double speed_m_s : {7.0, 9.0, 60.0}) {
     SCOPED_TRACE(speed_m_s);
