@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
+
 namespace aurasim::physics {
 namespace {
 
@@ -11,6 +13,12 @@ void add(PlanePoints& found, const HalfSpace& plane, const btVector3& p, btScala
 }
 
 }  // namespace
+
+HalfSpace half_space_of(const btCollisionShape& plane, const btTransform& pose) {
+  const auto& shape = static_cast<const btStaticPlaneShape&>(plane);
+  const btVector3 normal = pose.getBasis() * shape.getPlaneNormal();
+  return {normal, shape.getPlaneConstant() + normal.dot(pose.getOrigin())};
+}
 
 PlanePoints plane_points(const Rod& rod, const HalfSpace& plane, double margin_m) {
   PlanePoints found;

@@ -4,9 +4,12 @@
 #include <array>
 #include <cstdint>
 
+#include <LinearMath/btTransform.h>
 #include <LinearMath/btVector3.h>
 
 #include "physics/rod_points.h"
+
+class btCollisionShape;
 
 namespace aurasim::physics {
 
@@ -17,6 +20,9 @@ struct HalfSpace {
 
   btScalar above(const btVector3& p) const { return normal.dot(p) - offset_m; }
 };
+
+/// Of a plane's shape in the world.
+HalfSpace half_space_of(const btCollisionShape& plane, const btTransform& pose);
 
 struct PlanePoint {
   btVector3 on_plane{0, 0, 0};

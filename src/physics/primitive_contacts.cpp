@@ -10,9 +10,7 @@
 #include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
-#include <BulletCollision/CollisionShapes/btCapsuleShape.h>
-#include <BulletCollision/CollisionShapes/btSphereShape.h>
-#include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
+#include <BulletCollision/CollisionShapes/btCollisionShape.h>
 
 #include "physics/plane_points.h"
 #include "physics/rod_points.h"
@@ -33,13 +31,6 @@ btVector3 half_extents_of(const btCollisionObjectWrapper& box) {
   return static_cast<const btBoxShape&>(*box.getCollisionShape()).getHalfExtentsWithMargin();
 }
 
-HalfSpace half_space_of(const btCollisionObjectWrapper& object) {
-  const auto& plane = static_cast<const btStaticPlaneShape&>(*object.getCollisionShape());
-  const btTransform& pose = object.getWorldTransform();
-  const btVector3 normal = pose.getBasis() * plane.getPlaneNormal();
-  return {normal, plane.getPlaneConstant() + normal.dot(pose.getOrigin())};
-}
-
 /// A point of the two bodies that a routine calls "one" and "other". `normal` points from the other to the one.
 NamedPoint named_point(bool one_is_a, const btVector3& normal, const btVector3& on_other, btScalar gap,
                        ContactFeatures of) {
@@ -47,16 +38,9 @@ NamedPoint named_point(bool one_is_a, const btVector3& normal, const btVector3& 
   return {{-normal, on_other + normal * gap, gap}, {of.of_b, of.of_a}};
 }
 
-/// A ball or capsule in the world.
+/// Precondition: `object` is a ball or capsule.
 Rod rod_of(const btCollisionObjectWrapper& object) {
-  const btCollisionShape& shape = *object.getCollisionShape();
-  const btTransform& pose = object.getWorldTransform();
-  if (shape.getShapeType() == SPHERE_SHAPE_PROXYTYPE) {
-    return {pose.getOrigin(), {0, 0, 0}, static_cast<const btSphereShape&>(shape).getRadius()};
-  }
-  const auto& capsule = static_cast<const btCapsuleShape&>(shape);
-  return {pose.getOrigin(), pose.getBasis().getColumn(capsule.getUpAxis()) * capsule.getHalfHeight(),
-          capsule.getRadius()};
+  return *physics::rod_of(*object.getCollisionShape(), object.getWorldTransform());
 }
 
 class PrimitiveContacts final : public WholeContacts {
@@ -90,7 +74,7 @@ class PrimitiveContacts final : public WholeContacts {
 
   std::size_t on_plane(const btCollisionObjectWrapper& round, const btCollisionObjectWrapper& plane, bool round_is_a,
                        Found& points) const {
-    const HalfSpace half_space = half_space_of(plane);
+    const HalfSpace half_space = half_space_of(*plane.getCollisionShape(), plane.getWorldTransform());
     const PlanePoints found = plane_points(rod_of(round), half_space, manifold().margin_m());
     const auto count = static_cast<std::size_t>(found.count);
     for (std::size_t i = 0; i < count; ++i) {

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <optional>
+
+#include <BulletCollision/CollisionShapes/btCapsuleShape.h>
+#include <BulletCollision/CollisionShapes/btSphereShape.h>
 
 namespace aurasim::physics {
 namespace {
@@ -224,6 +226,13 @@ class OnBox {
     return distance > kTouch_m ? outside(t, way) : inside();
   }
 
+  /// Nothing if the segment is in the box.
+  std::optional<RodPoint> nearest() const {
+    const btScalar t = nearest_to_box(rod_, half_extents_);
+    if (!(beyond(rod_.at(t), half_extents_).length() > kTouch_m)) return std::nullopt;
+    return ball_at(t, 0);
+  }
+
  private:
   /// The segment is outside of the box. `way`: from the box to the segment at t, where it is nearest.
   RodPoints outside(btScalar t, const btVector3& way) const {
@@ -316,6 +325,24 @@ class OnBox {
 };
 
 }  // namespace
+
+std::optional<Rod> rod_of(const btCollisionShape& shape, const btTransform& pose) {
+  if (shape.getShapeType() == SPHERE_SHAPE_PROXYTYPE) {
+    return Rod{pose.getOrigin(), {0, 0, 0}, static_cast<const btSphereShape&>(shape).getRadius()};
+  }
+  if (shape.getShapeType() != CAPSULE_SHAPE_PROXYTYPE) return std::nullopt;
+  const auto& capsule = static_cast<const btCapsuleShape&>(shape);
+  return Rod{pose.getOrigin(), pose.getBasis().getColumn(capsule.getUpAxis()) * capsule.getHalfHeight(),
+             capsule.getRadius()};
+}
+
+RodPoint nearest_point(const Rod& rod, const Rod& other) {
+  return point_of_balls(rod, other, TwoSegments(rod, other).nearest());
+}
+
+std::optional<RodPoint> nearest_point(const Rod& rod, const btVector3& half_extents) {
+  return OnBox(rod, half_extents, 0).nearest();
+}
 
 RodPoints rod_points(const Rod& rod, const Rod& other, double margin_m) {
   const TwoSegments two(rod, other);

@@ -8,10 +8,14 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
+#include <LinearMath/btTransform.h>
 #include <LinearMath/btVector3.h>
 
 #include "physics/contact_features.h"
+
+class btCollisionShape;
 
 namespace aurasim::physics {
 
@@ -36,6 +40,15 @@ struct RodPoints {
   int count = 0;
   std::array<RodPoint, 3> points;
 };
+
+/// A ball or capsule in the world; nothing for other shapes.
+std::optional<Rod> rod_of(const btCollisionShape& shape, const btTransform& pose);
+
+/// The points where a rod is nearest to another one. The gap is exact, also of what is far apart.
+RodPoint nearest_point(const Rod& rod, const Rod& other);
+
+/// The point where a rod is nearest to a box about the origin. Nothing if the rod's segment is in the box.
+std::optional<RodPoint> nearest_point(const Rod& rod, const btVector3& half_extents);
 
 /// Points with gaps of at most `margin_m`. `other` is the other shape of RodPoint.
 RodPoints rod_points(const Rod& rod, const Rod& other, double margin_m);

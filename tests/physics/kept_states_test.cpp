@@ -162,7 +162,7 @@ TEST_P(KeptStates, AreWhatTheBodiesAre) {
     kept += shown.kept, compared += shown.compared, shared += shown.shared;
   }
   EXPECT_GT(compared, 50U);
-  EXPECT_TRUE(shared > 1000 || !settings().looks_once()) << shared;
+  EXPECT_TRUE(shared > 300 || !settings().looks_once()) << shared;
   EXPECT_TRUE(kept > 5000 || !settings().looks_once()) << kept;
 }
 

@@ -1,10 +1,19 @@
 // The soft step with physics.continuous: contacts ahead of time.
 #include <cmath>
+#include <random>
 #include <string>
 
+#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+#include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
+#include <BulletCollision/CollisionShapes/btCapsuleShape.h>
+#include <BulletCollision/CollisionShapes/btCylinderShape.h>
+#include <BulletCollision/CollisionShapes/btSphereShape.h>
+#include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
 #include <gtest/gtest.h>
 
 #include "physics/scenes.h"
+#include "physics/soft/ahead.h"
 
 namespace aurasim::physics::testing {
 namespace {
@@ -87,6 +96,54 @@ TEST(SoftAhead, ABallThatLosesNothingComesBackUp) {
     energy = 0.5 * ball.v_WB.squaredNorm() + 9.81 * (ball.p_WB.z() - 0.25);
   }
   EXPECT_NEAR(energy / 9.81, 1, 0.01);
+}
+
+/// Does Bullet's cast find that `a`, which is convex, meets `b` while it moves by `way`?
+bool cast_hits(const btCollisionObject& a, const btCollisionObject& b, const btVector3& way) {
+  const btTransform& from = a.getWorldTransform();
+  const btTransform to(from.getBasis(), from.getOrigin() + way);
+  btCollisionWorld::ClosestConvexResultCallback hit(from.getOrigin(), to.getOrigin());
+  btCollisionWorld::objectQuerySingle(static_cast<const btConvexShape*>(a.getCollisionShape()), from, to,
+                                      const_cast<btCollisionObject*>(&b), b.getCollisionShape(), b.getWorldTransform(),
+                                      hit, 0);
+  const btVector3 until = way * hit.m_closestHitFraction;
+  return hit.hasHit() && hit.m_closestHitFraction > 0 && until.dot(-hit.m_hitNormalWorld) > 0;
+}
+
+/// Most pairs are found to pass each other without a cast. The answer is that of a cast all the same.
+TEST(SoftAhead, WhatIsNotCastWouldHitNothing) {
+  std::mt19937_64 random(11);
+  const auto number = [&random](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  const auto put = [&](btCollisionObject& object, btCollisionShape& shape, double apart) {
+    const btQuaternion turn(number(-1, 1), number(-1, 1), number(-1, 1), number(-1, 1));
+    object.setCollisionShape(&shape);
+    object.setWorldTransform(
+        btTransform(turn.normalized(), {number(-apart, apart), number(-apart, apart), number(-apart, apart)}));
+    const bool is_plane = shape.getShapeType() == STATIC_PLANE_PROXYTYPE;
+    object.setCollisionFlags(is_plane ? btCollisionObject::CF_STATIC_OBJECT : 0);
+  };
+  btSphereShape ball(0.2);
+  btCapsuleShape capsule(0.15, 0.8);
+  btBoxShape box({0.3, 0.5, 0.2});
+  btCylinderShape cylinder({0.3, 0.2, 0.3});
+  btStaticPlaneShape plane({0, 0, 1}, 0.1);
+  btCollisionShape* const shapes[] = {&ball, &capsule, &box, &cylinder, &plane};
+  int hits = 0, passes = 0;
+  for (int i = 0; i < 100000; ++i) {
+    btCollisionObject a, b;
+    put(a, *shapes[random() % 4], 1.1), put(b, *shapes[random() % 5], 0.3);
+    const btVector3 way(number(-0.6, 0.6), number(-0.6, 0.6), number(-0.6, 0.6));
+    const bool hit = cast_hits(a, b, way);
+    ++(hit ? hits : passes);
+    ASSERT_EQ(meeting_ahead(a, b, way).has_value(), hit) << i;
+    if (b.isStaticObject()) {
+      ASSERT_EQ(meeting_ahead(b, a, -way).has_value(), hit) << i;
+    }
+  }
+  EXPECT_GT(hits, 5000);
+  EXPECT_GT(passes, 5000);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
@@ -29,6 +30,8 @@ unsigned what_of(const JointAxes& joint) {
   if (joint.own == 2u) what |= soft::kSlides;
   if (joint.counts_turns()) what |= soft::kWholeTurns;
   if (joint.ball_damping > 0) what |= soft::kDampedBall;
+  const auto is_fixed = [](const JointAxes::Axis& axis) { return axis.is_held && axis.low == axis.high; };
+  if (std::ranges::all_of(std::span(joint.axes).first<3>(), is_fixed)) what |= soft::kHeldShifts;
   for (std::size_t i = 0; i < joint.axes.size(); ++i) {
     if (joint.axes[i].is_held) what |= soft::kHeldAxis << i;
     if (joint.axes[i].stiffness > 0 || joint.axes[i].damping > 0) what |= soft::kSpringAxis << i;

@@ -80,6 +80,26 @@ AURASIM_INLINE void look_at_axis(JointBlock& block, int axis, const Vec& n, cons
   aim(of, block.whole * min(block.breaks, all(Real(1e30))), h_s);
 }
 
+/// The effective mass of the three translations together: the inverse of the matrix that turns impulses along their
+/// axes into speeds along them.
+AURASIM_INLINE void look_at_shifts(JointBlock& block) {
+  const Lanes inv_mass = block.inv_mass_a + block.inv_mass_b;
+  Vec on_a[3], on_b[3], turned_a[3], turned_b[3];
+  for (int i = 0; i < 3; ++i) {
+    const Vec n = load(block.axes[i].n);
+    on_a[i] = cross(load(block.arm_a), n), on_b[i] = cross(load(block.arm_b), n);
+    turned_a[i] = mul(block.inv_inertia_a, on_a[i]), turned_b[i] = mul(block.inv_inertia_b, on_b[i]);
+  }
+  const auto at = [&](int i, int k) { return dot(on_a[i], turned_a[k]) + dot(on_b[i], turned_b[k]); };
+  const Lanes xx = inv_mass + at(0, 0), yy = inv_mass + at(1, 1), zz = inv_mass + at(2, 2);
+  const Lanes xy = at(0, 1), xz = at(0, 2), yz = at(1, 2);
+  const Lanes c_x = yy * zz - yz * yz, c_y = xz * yz - xy * zz, c_z = xy * yz - xz * yy;
+  const Lanes per = block.whole * inverse(xx * c_x + xy * c_y + xz * c_z);
+  block.shift_mass[0] = per * c_x, block.shift_mass[1] = per * c_y, block.shift_mass[2] = per * c_z;
+  block.shift_mass[3] = per * (xx * zz - xz * xz), block.shift_mass[4] = per * (xy * xz - xx * yz);
+  block.shift_mass[5] = per * (xx * yy - xy * xy);
+}
+
 AURASIM_INLINE Lanes took_most(const JointBlock& block, unsigned what) {
   Lanes most = block.took;
   for (int i = 0; i < 6; ++i) {
@@ -117,6 +137,7 @@ void look_at_joints(JointBlock* blocks, std::size_t count, unsigned what, const 
     for (int i = 0; i < 3 && (what & kShifts) != 0; ++i) {
       look_at_axis(block, i, frame_b[i], dot(apart, frame_b[i]), h_s);
     }
+    if ((what & kHeldShifts) != 0) look_at_shifts(block);
     if ((what & kOwnRows) != 0) look_at_own(block, what);
   }
 }
@@ -143,6 +164,7 @@ void begin_joints(JointBlock* blocks, std::size_t count, unsigned what, Mover* m
       axis.impulse = Lanes{};
       axis.mass = block.whole * axis.mass, axis.least = block.whole * axis.least, axis.most = block.whole * axis.most;
     }
+    for (Lanes& mass : block.shift_mass) mass = block.whole * mass;
     if ((what & kOwnRows) != 0) begin_own(block, what);
     if ((what & (kSprings | kDampedBall)) == 0) continue;
     Pair p = velocities(block, movers);
@@ -163,6 +185,24 @@ AURASIM_INLINE void solve_axis(Pair& p, JointBlock& block, int axis) {
   of.impulse = total;
 }
 
+/// Solves the three held translations together.
+AURASIM_INLINE void solve_shifts(Pair& p, JointBlock& block) {
+  const Vec n[3] = {load(block.axes[0].n), load(block.axes[1].n), load(block.axes[2].n)};
+  const Vec v = speed(p, load(block.arm_a), load(block.arm_b));
+  const Vec missing = {block.axes[0].wanted + dot(v, n[0]), block.axes[1].wanted + dot(v, n[1]),
+                       block.axes[2].wanted + dot(v, n[2])};
+  const Vec gain = mul(block.shift_mass, missing);
+  const Lanes gains[3] = {gain.x, gain.y, gain.z};
+  Vec impulse{};
+  for (int i = 0; i < 3; ++i) {
+    auto& of = block.axes[i];
+    const Lanes total = max(of.least, min(of.most, of.impulse + gains[i]));
+    impulse = add(impulse, mul(of.impulse - total, n[i]));
+    of.impulse = total;
+  }
+  push(p, block, impulse, load(block.arm_a), load(block.arm_b));
+}
+
 AURASIM_INLINE void solve_motor(Pair& p, JointBlock& block) {
   const Vec n = load(block.axes[5].n);
   const Lanes wanted = block.motor_took + block.axes[5].mass * (block.motor_rad_s - rate(p, block, 5, n));
@@ -178,9 +218,11 @@ void solve_joints(JointBlock* blocks, std::size_t count, unsigned what, Mover* m
     Pair p = velocities(block, movers);
     if ((what & kJointMotor) != 0) solve_motor(p, block);
     if ((what & kOwnRows) != 0) solve_own(p, block, what);
-    for (int i = 5; i >= 0; --i) {
+    const bool together = (what & kHeldShifts) != 0;
+    for (int i = 5; i >= (together ? 3 : 0); --i) {
       if ((what & kHeldAxis << i) != 0) solve_axis(p, block, i);
     }
+    if (together) solve_shifts(p, block);
     store(p, block, movers);
   }
 }

@@ -80,6 +80,9 @@ inline constexpr unsigned kHeldAxis = 1, kSpringAxis = 1 << 6, kJointMotor = 1 <
 inline constexpr unsigned kJointDrive = 1 << 13, kJointSpring = 1 << 14, kJointFriction = 1 << 15;
 inline constexpr unsigned kSlides = 1 << 16, kWholeTurns = 1 << 17, kDampedBall = 1 << 18;
 
+/// kHeldShifts: the three translations are held, and solved together.
+inline constexpr unsigned kHeldShifts = 1 << 19;
+
 /// Joints of kLanes pairs of bodies. No two lanes share a body that moves. Coordinates are those of J of a relative to
 /// J of b: translations along the axes of b's J, m, then angles of turns about x, then y, then z, each about the axis
 /// as turned by then, rad. Directions are in the world frame.
@@ -119,6 +122,7 @@ struct alignas(64) JointBlock {
   // For the present poses of the bodies:
   Lanes inv_inertia_a[6], inv_inertia_b[6];
   Lanes arm_a[3], arm_b[3];  ///< where impulses act, from the centres of mass, m
+  Lanes shift_mass[6];       ///< effective mass of the three translations together, as inertia in Block, kg
 
   // For the free axis:
   Pull drive, spring;

@@ -41,6 +41,11 @@ struct Layers final : JPH::BroadPhaseLayerInterface {
   JPH::BroadPhaseLayer GetBroadPhaseLayer(JPH::ObjectLayer layer) const override {
     return JPH::BroadPhaseLayer(static_cast<JPH::uint8>(layer));
   }
+#if defined(JPH_EXTERNAL_PROFILE) || defined(JPH_PROFILE_ENABLED)
+  const char* GetBroadPhaseLayerName(JPH::BroadPhaseLayer layer) const override {
+    return layer == JPH::BroadPhaseLayer(kMoving) ? "moving" : "fixed";
+  }
+#endif
 };
 struct MovesOrMeetsMoving final : JPH::ObjectVsBroadPhaseLayerFilter {
   bool ShouldCollide(JPH::ObjectLayer a, JPH::BroadPhaseLayer b) const override {
