@@ -154,9 +154,9 @@ NodeRoster& ControlBus::Impl::look() {
   participant.progress();
   take_statuses();
   if (is_time_to_look()) {
-    roster.look(status_reader.watch().writers());
+    roster.look(status_reader.writers());
   } else if (roster.has_news()) {
-    roster.look_at_news(status_reader.watch().writers());
+    roster.look_at_news(status_reader.writers());
   }
   return roster;
 }
@@ -164,7 +164,7 @@ NodeRoster& ControlBus::Impl::look() {
 /// True if processes have come or gone, or some time has passed.
 bool ControlBus::Impl::is_time_to_look() {
   const auto now = std::chrono::steady_clock::now();
-  const std::uint64_t changes = status_reader.watch().changes();
+  const std::uint64_t changes = status_reader.changes();
   if (changes == seen_changes && now < next_look) return false;
   seen_changes = changes;
   next_look = now + messages::status_period(settings.region_count) / kLooksInAPeriod;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <limits>
 #include <set>
 #include <string>
@@ -47,6 +48,14 @@ constexpr std::uint32_t kHeaders_B = 200;
 constexpr std::uint32_t kOriginal_B = 64;
 /// Bytes that keys add: heads and authentication code of the encrypted submessage, and one more code for each reader.
 constexpr std::uint32_t kCryptoHeaders_B = 128, kCryptoOfAReader_B = 20;
+/// Readers of a hub, besides those of the nodes: spares, and processes that are about to take a region over.
+constexpr std::size_t kReadersBesideNodes = 8;
+/// A sample has at least this share of a datagram, with keys and without.
+constexpr std::uint32_t kLeastShareWithKeys = 4, kLeastShare = 2;
+
+std::uint32_t least_sample_B(const Domain& domain) {
+  return domain.datagram_B() / (domain.has_keys() ? kLeastShareWithKeys : kLeastShare);
+}
 
 const messages::PartFields* part_fields_of(const eprosima::fastdds::dds::TypeSupport& type) {
   const auto* const has_fields = dynamic_cast<const messages::HasPartFields*>(type.get());
@@ -55,7 +64,7 @@ const messages::PartFields* part_fields_of(const eprosima::fastdds::dds::TypeSup
 
 /// Depth of a history that keeps the last samples: as in the profile, but enough for the parts of the largest message.
 std::int32_t depth_of(const eprosima::fastdds::dds::HistoryQosPolicy& history, const Domain& domain) {
-  const std::uint32_t parts = messages::parts_of(messages::kLargestMessage_B, domain.datagram_B() / 2);
+  const std::uint32_t parts = messages::parts_of(messages::kLargestMessage_B, least_sample_B(domain));
   return std::max(history.depth, static_cast<std::int32_t>(parts));
 }
 
@@ -85,6 +94,11 @@ void be_patient(eprosima::fastrtps::Duration_t& time, std::chrono::nanoseconds s
     time = eprosima::fastrtps::Duration_t(std::chrono::duration<double>(shortest).count());
 }
 
+bool goes_by_hub(const EndpointSpec& spec) {
+  return std::ranges::any_of(spec.partitions,
+                             [&](const std::string& name) { return topics::goes_by_hub(spec.topic, name); });
+}
+
 /// Partitions of a writer: those of its messages to all are the hub's, if there is one.
 std::vector<std::string> by_hub_if_needed(const Domain& domain, const EndpointSpec& spec) {
   std::vector<std::string> partitions = spec.partitions;
@@ -97,9 +111,7 @@ std::vector<std::string> by_hub_if_needed(const Domain& domain, const EndpointSp
 
 /// Spec of a reader of what a hub passes on in a run with keys. Nothing: it passes on no such messages.
 std::optional<EndpointSpec> spec_from_hub(const EndpointSpec& spec) {
-  const bool goes_by_hub = std::ranges::any_of(
-      spec.partitions, [&](const std::string& partition) { return topics::goes_by_hub(spec.topic, partition); });
-  if (!goes_by_hub || spec.is_of_hub || spec.is_from_hub) return std::nullopt;
+  if (!goes_by_hub(spec) || spec.is_of_hub || spec.is_from_hub) return std::nullopt;
   EndpointSpec from_hub = spec;
   from_hub.partitions = {topics::kFromHub};
   from_hub.region.reset();
@@ -119,7 +131,8 @@ Writer::Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
       type_(domain.participant().find_type(domain.topic(spec.topic).get_type_name())),
       part_fields_(part_fields_of(type_)),
       watch_(wakeup),
-      is_of_nodes_(is_of_nodes(spec.topic)) {
+      is_of_nodes_(is_of_nodes(spec.topic)),
+      goes_by_hub_(domain.speaks_by_hub() && goes_by_hub(spec)) {
   auto& topic = domain.topic(spec.topic);
   const auto stopped = domain.guard().delivery().stop();
   PublisherQos publisher_qos;
@@ -175,10 +188,15 @@ WriteResult Writer::write(void* sample) {
 /// Largest serialized sample that Fast DDS sends in one datagram.
 std::uint32_t Writer::largest_sample_B() const {
   std::size_t headers_B = kHeaders_B;
-  if (domain_.speaks_by_hub()) headers_B += kOriginal_B;
-  if (domain_.has_keys()) headers_B += kCryptoHeaders_B + kCryptoOfAReader_B * watch_.readers().size();
-  // Codes for many readers leave no room in a small datagram: at least half of it is for the sample.
-  return domain_.datagram_B() - std::min(static_cast<std::uint32_t>(headers_B), domain_.datagram_B() / 2);
+  std::size_t readers = watch_.readers().size();
+  if (goes_by_hub_) {
+    headers_B += kOriginal_B;
+    readers = std::max(readers, domain_.nodes() + kReadersBesideNodes);  // the hub's, to whom it passes the sample on
+  }
+  if (domain_.has_keys()) headers_B += kCryptoHeaders_B + kCryptoOfAReader_B * readers;
+  const std::uint32_t least_B = least_sample_B(domain_);
+  return std::max(least_B,
+                  domain_.datagram_B() - std::min(static_cast<std::uint32_t>(headers_B), domain_.datagram_B()));
 }
 
 /// Writes the parts of a message. After a failure the readers drop those before it.
@@ -323,6 +341,12 @@ Reader::Reader(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
   if (spec.region) {
     domain.directory().add(reader_->guid(), *spec.region);
   }
+}
+
+std::vector<RemoteWriter> Reader::writers() const {
+  std::vector<RemoteWriter> writers = watch_.writers();
+  if (from_hub_ != nullptr) std::ranges::copy(from_hub_->writers(), std::back_inserter(writers));
+  return writers;
 }
 
 /// Reads what a hub passes on, once this process has to, in a run with keys.

@@ -93,6 +93,7 @@ class Writer {
   std::uint64_t messages_in_parts_ = 0;
   WriterWatch watch_;
   bool is_of_nodes_ = false;                        ///< its samples are messages between nodes
+  bool goes_by_hub_ = false;                        ///< a hub passes its samples on
   LivelinessAsserter::Nanoseconds written_ns_ = 0;  ///< when the last sample was written
   RisingTime sent_;
   std::int32_t unread_ = 0;  ///< calls of forget_acknowledged() since every reader had acknowledged everything
@@ -143,6 +144,11 @@ class Reader {
   void ration(const Origin& origin, const std::string& what);
 
   const ReaderWatch& watch() const { return watch_; }
+  /// Writers in order of match, then the hubs that are heard by a reader of their own (with keys). Those that are gone
+  /// are kept.
+  std::vector<RemoteWriter> writers() const;
+  /// Number of their matches, ends of matches, and changes of a proof of life so far.
+  std::uint64_t changes() const { return watch_.changes() + (from_hub_ == nullptr ? 0 : from_hub_->changes()); }
   /// How long a writer is silent before that is believed: one and a half leases.
   std::chrono::nanoseconds believed_silence() const { return believed_silence_; }
   /// Partitions of the reader, from its QoS.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <iterator>
 #include <numeric>
-#include <tuple>
 #include <utility>
 
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
@@ -39,15 +38,6 @@ bool wants_to_sleep(const btRigidBody& body) {
 /// goes no farther than motion.
 bool is_calm(const btRigidBody& body) {
   return body.getActivationState() == WANTS_DEACTIVATION || (wants_to_sleep(body) && is_still(body));
-}
-
-std::size_t last_of(const SoftTouch& touch) { return static_cast<std::size_t>(std::max(touch.a, touch.b)); }
-
-/// The order of contacts. Parts matter for compounds only.
-bool comes_before(const SoftTouch& x, const SoftTouch& y) {
-  const std::size_t last_x = last_of(x), last_y = last_of(y);
-  if (last_x != last_y) return last_x < last_y;
-  return std::tuple(std::min(x.a, x.b), x.a, x.parts) < std::tuple(std::min(y.a, y.b), y.a, y.parts);
 }
 
 void stop(btRigidBody& body) {
@@ -96,7 +86,8 @@ void SoftIslands::forget_past() {
 }
 
 void SoftIslands::free_spare_memory() {
-  core::free_memory(touches_, unsorted_, ends_, joints_, order_);
+  touches_ = {};
+  core::free_memory(joints_, order_);
   seams_.shrink_to_fit();
   for (auto* list : {&called_, &changes_, &settling_, &marked_, &forgotten_, &found_}) list->shrink_to_fit();
   awake_.shrink_to_fit();
@@ -368,7 +359,7 @@ void SoftIslands::rest(btRigidBody& body, btScalar step_s) const {
 }
 
 void SoftIslands::call_neighbours() {
-  for (const SoftTouch& touch : touches_) {
+  for (const SoftTouch& touch : touches_.all()) {
     const bool a_moves = has(touch.slot_a, kMoves);
     if (a_moves == has(touch.slot_b, kMoves)) continue;
     const Entry& moved = entries_[a_moves ? touch.slot_a : touch.slot_b];
@@ -390,37 +381,6 @@ void SoftIslands::decide(btRigidBody& guest, bool moves) {
   if (has(slot, kMoves) == moves) return;
   states_[slot] = static_cast<std::uint8_t>(moves ? states_[slot] | kMoves : states_[slot] & ~kMoves);
   put_into(moves ? List::kAwake : List::kAsleep, slot);
-}
-
-void SoftIslands::sort(std::span<const SoftTouch> touches, soft::Team& team) {
-  constexpr std::size_t kMany = 16;  // bodies for each touch
-  const auto acts = [this](const SoftTouch& touch) {
-    return touch.acts && (has(touch.slot_a, kMoves) || has(touch.slot_b, kMoves));
-  };
-  touches_.clear();
-  std::ranges::copy_if(touches, std::back_inserter(touches_), acts);
-  std::size_t last = 0;
-  for (const SoftTouch& touch : touches_) last = std::max(last, last_of(touch));
-  if (touches_.size() * kMany < last) {
-    std::ranges::sort(touches_, comes_before);
-  } else {
-    sort_many(last, team);
-  }
-}
-
-/// A counting sort, because touches come in no order and each body has several.
-void SoftIslands::sort_many(std::size_t last, soft::Team& team) {
-  unsorted_.swap(touches_);
-  ends_.assign(last + 2, 0);
-  for (const SoftTouch& touch : unsorted_) ++ends_[last_of(touch) + 1];
-  for (std::size_t i = 1; i < ends_.size(); ++i) ends_[i] += ends_[i - 1];
-  touches_.resize(ends_.back());
-  for (const SoftTouch& touch : unsorted_) touches_[ends_[last_of(touch)]++] = touch;
-  // each entry of ends_ is now the end of its body's touches
-  team.for_each(ends_.size() - 1, [&](std::size_t body) {
-    std::sort(touches_.begin() + static_cast<std::ptrdiff_t>(body > 0 ? ends_[body - 1] : 0),
-              touches_.begin() + static_cast<std::ptrdiff_t>(ends_[body]), comes_before);
-  });
 }
 
 }  // namespace aurasim::physics

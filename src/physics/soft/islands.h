@@ -12,7 +12,7 @@
 
 #include "core/block.h"
 #include "physics/pair_lists.h"
-#include "physics/soft/threads.h"
+#include "physics/soft/sorted_touches.h"
 #include "physics/soft/touch.h"
 
 class btTypedConstraint;
@@ -94,12 +94,12 @@ class SoftIslands {
   /// Calls a sleeper that a guest has touched.
   void call(std::uint32_t sleeper);
 
+  /// Sorts the touches of bodies that are awake now.
+  void sort(std::span<const SoftTouch> touches, soft::Team& team) { touches_.sort(touches, *this, team); }
+
   bool has_woken_any() const { return has_woken_any_; }
   /// Did the body sleep at call(), and was it woken by find()?
   bool is_woken(std::uint32_t slot) const { return has(slot, kSleeps) && has(slot, kMoves); }
-
-  /// Sorts the touches of bodies that are awake now.
-  void sort(std::span<const SoftTouch> touches, soft::Team& team);
 
   /// Gives the bodies that have moved in the step their activation states, after their velocities are known. Sleepers
   /// that one of them has touched across a seam are called, unless it is calm: they wake in the next step.
@@ -110,8 +110,8 @@ class SoftIslands {
 
   /// After call(): bodies that did not sleep. After find(): bodies that move in the step.
   std::span<btRigidBody* const> awake() const { return awake_; }
-  /// Touches of awake bodies, after sort(). Ordered by the bodies' user indices, then by their parts.
-  std::span<const SoftTouch> touches() const { return touches_; }
+  /// Touches of awake bodies, after sort().
+  std::span<const SoftTouch> touches() const { return touches_.all(); }
   /// Joints of awake bodies, ordered by their user types.
   std::span<btTypedConstraint* const> joints() const { return joints_; }
 
@@ -183,7 +183,6 @@ class SoftIslands {
   void wake();
   void rest(btRigidBody& body, btScalar step_s) const;
   void call_neighbours();
-  void sort_many(std::size_t last, soft::Team& team);
 
   std::vector<std::uint8_t> states_{kSleeps | kSlept | kKept};  ///< by slot, as the following vectors
   std::vector<std::uint32_t> parents_{0};
@@ -204,8 +203,7 @@ class SoftIslands {
   bool has_woken_any_ = false;
   std::vector<btRigidBody*> awake_;
   std::vector<btRigidBody*> guests_;
-  std::vector<SoftTouch> touches_, unsorted_;
-  std::vector<std::uint32_t> ends_;  ///< by user index: end of the body's touches
+  SortedTouches touches_;
   std::vector<btTypedConstraint*> joints_;
 };
 

@@ -16,6 +16,7 @@ set(soft_step_sources
   soft/seam_parcels.cpp
   soft/shared.cpp
   soft/shared_rows.cpp
+  soft/sorted_touches.cpp
   soft/step.cpp
   soft/threads.cpp
   soft/world.cpp)
