@@ -95,7 +95,10 @@ class SoftIslands {
   void call(std::uint32_t sleeper);
 
   /// Sorts the touches of bodies that are awake now.
-  void sort(std::span<const SoftTouch> touches, soft::Team& team) { touches_.sort(touches, *this, team); }
+  void sort(std::span<const SoftTouch> touches, soft::Team& team) {
+    touches_.sort(
+        touches, [this](std::uint32_t slot) { return moves(slot); }, team);
+  }
 
   bool has_woken_any() const { return has_woken_any_; }
   /// Did the body sleep at call(), and was it woken by find()?

@@ -1,10 +1,8 @@
 #include "physics/soft/sorted_touches.h"
 
 #include <algorithm>
-#include <iterator>
+#include <cstddef>
 #include <tuple>
-
-#include "physics/soft/islands.h"
 
 namespace aurasim::physics {
 namespace {
@@ -20,13 +18,8 @@ bool comes_before(const SoftTouch& x, const SoftTouch& y) {
 
 }  // namespace
 
-void SortedTouches::sort(std::span<const SoftTouch> touches, const SoftIslands& islands, soft::Team& team) {
+void SortedTouches::sort(soft::Team& team) {
   constexpr std::size_t kMany = 16;  // bodies for each touch
-  const auto acts = [&islands](const SoftTouch& touch) {
-    return touch.acts && (islands.moves(touch.slot_a) || islands.moves(touch.slot_b));
-  };
-  sorted_.clear();
-  std::ranges::copy_if(touches, std::back_inserter(sorted_), acts);
   std::size_t last = 0;
   for (const SoftTouch& touch : sorted_) last = std::max(last, last_of(touch));
   if (sorted_.size() * kMany < last) {
