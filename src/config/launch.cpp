@@ -73,6 +73,17 @@ void check_hub(const Fields& fields, const Dds& dds) {
   }
 }
 
+/// Hubs of several hosts have no keys.
+void check_neighbours(const Field& field, const Dds& dds) {
+  if (dds.discovery != Discovery::kNeighbours) return;
+  const Fields fields(field);
+  if (!dds.security.empty() && !is_on_loopback(dds)) {
+    fields["security"].refuse(
+        "nothing with discovery: neighbours on several hosts, whose hubs have no key; with keys use multicast, peers "
+        "or server there");
+  }
+}
+
 void read_dds(const Field& field, const std::filesystem::path& folder, Dds& dds) {
   dds.profiles = usual_profiles(folder);
   if (!field.given()) return;
@@ -99,6 +110,7 @@ void read_dds(const Field& field, const std::filesystem::path& folder, Dds& dds)
     Fields(fields["impair"])["bandwidth"].refuse("0, or at least 1 B/s");
   }
   check_hub(fields, dds);
+  check_neighbours(field, dds);
   const bool needs_peers = dds.discovery == Discovery::kPeers || dds.discovery == Discovery::kServer;
   if (needs_peers && dds.peers.empty() && !fields.has("peers")) {
     field.complain("needs peers, allowed: peers: [ADDRESS, ...] with discovery: peers or server");

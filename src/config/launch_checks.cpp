@@ -152,18 +152,6 @@ void settle_auto(Launch& launch) {
 
 }  // namespace
 
-namespace {
-
-/// With keys a hub's message carries a code for each node. With more nodes they would leave no room for the message in
-/// a packet of Ethernet.
-constexpr std::size_t kMostRegionsOfSitesWithKeys = 24;
-
-bool has_sites_with_keys(const Dds& dds) {
-  return dds.discovery == Discovery::kNeighbours && !dds.security.empty() && !is_on_loopback(dds);
-}
-
-}  // namespace
-
 bool is_on_loopback(const Dds& dds) {
   return std::ranges::all_of(dds.interfaces, [](const std::string& address) { return address.starts_with("127."); });
 }
@@ -178,11 +166,6 @@ void check_regions(const Field& regions, std::optional<double> neighbour_distanc
   if (launch.time.redo == Redo::kOn && launch.time.sync == core::SyncMode::kFreeRunning) {
     regions.complain("time.redo is on, allowed: auto or off where time.sync is free_running: nodes do not agree there");
     return;
-  }
-  if (has_sites_with_keys(launch.dds) && launch.regions.size() > kMostRegionsOfSitesWithKeys) {
-    regions.complain(
-        fmt::format("there are {}, allowed: at most {} with discovery: neighbours and keys on several hosts",
-                    launch.regions.size(), kMostRegionsOfSitesWithKeys));
   }
   if (launch.is_coupled()) {
     for (const auto& [why, allowed] : problems_of_coupled(launch)) {

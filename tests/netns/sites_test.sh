@@ -13,16 +13,10 @@ aurasim=${AURASIM:-$PWD/build/release/aurasim}
 lab=aurasites$$
 reports=$(mktemp -d)
 launch=launch_configs/demo.yaml
+regions=$((sites * nodes))
 declare -A pids hubs
 same=(--set time.sync=deterministic)
-keys=()
-# NODES: from now on so many nodes are on each site, with regions that listen to the next ones.
-use_nodes() {
-  nodes=$1
-  regions=$((sites * nodes))
-  cut=(--set "regions={layout: columns, count: $regions, width: $((72 / regions))}")
-}
-use_nodes "$nodes"
+cut=(--set "regions={layout: columns, count: $regions, width: $((72 / regions))}") # regions that listen to the next ones
 
 skip() { echo "skipped: $1"; exit 77; }
 fail() {
@@ -75,7 +69,7 @@ on_host() {
   shift 4
   ip netns exec "$(ns "$site" "$host")" "$aurasim" "${command[@]}" "$launch" "${same[@]}" "${cut[@]}" --set dds.domain=189 \
     --set "dds.profiles=$profiles" --set dds.discovery=neighbours --set "dds.interfaces=[$(address "$site" "$host")]" \
-    --set "dds.hub=$(hub_address "$site")" "${keys[@]}" "$@" >"$reports/$name.log" 2>&1 &
+    --set "dds.hub=$(hub_address "$site")" "$@" >"$reports/$name.log" 2>&1 &
 }
 
 start_hub() {
@@ -156,15 +150,6 @@ up || skip "cannot make network namespaces"
 "$aurasim" launch $launch --headless --steps "$steps" --report "$reports/central" "${same[@]}" \
   --set regions.count=1 --set time.pace=none --set dds.domain=188 >/dev/null
 
-
-# A folder of keys for all processes of a run.
-make_keys() {
-  "$aurasim" keys init "$reports/keys"
-  "$aurasim" keys add-region "$reports/keys" "0-$((regions - 1))"
-  "$aurasim" keys add "$reports/keys" spare-1 --role spare
-  "$aurasim" keys add "$reports/keys" hub-1 --role hub
-  keys=(--set "dds.security=$reports/keys")
-}
 
 # Nothing of a run says that a node has died.
 nobody_died() {
@@ -260,8 +245,6 @@ case $mode in
   short)
     hub_is_killed
     profiles=$short_leases
-    use_nodes 2 # keys make each of them cost more, and what is tested is the same
-    make_keys
     hub_and_node_are_killed
     ;;
   long)
@@ -272,15 +255,6 @@ case $mode in
     is_steered
     hubs_are_cut_off
     site_is_cut_off
-    make_keys
-    hub_is_killed
-    hub_and_node_are_killed
-    all_hubs_are_killed
-    ;;
-  keys_*) # one of them with keys
-    profiles=$short_leases
-    make_keys
-    "${mode#keys_}"
     ;;
   *) # one of them
     profiles=$short_leases
