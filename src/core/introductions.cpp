@@ -11,8 +11,10 @@ namespace {
 /// Where states are checked, bodies are believed to keep to their paths (InterestMatching::zone_of).
 bool keep_to_paths(const Aura& aura) { return aura.rules().redo && aura.predicts(); }
 
-/// Regions within this distance of a body have to know of it by the time that an introduction takes effect. What keeps
-/// to its path and falls comes no nearer to another region.
+/// How far a body may come until an introduction takes effect and its aura has then been acted upon, in metres: that
+/// far from its place its surface and its contact margin end. `others_top_speed_m_s` adds the way of what it may meet;
+/// 0: that has a reach of its own. Where bodies keep to their paths only the way across counts, because what falls
+/// comes no nearer to another region.
 double reach_m(const Aura& aura, const Path& path, double others_top_speed_m_s) {
   const AuraRules& rules = aura.rules();
   const double steps = path.age_steps + static_cast<double>(horizon::introduction(rules.lookahead));
@@ -20,10 +22,17 @@ double reach_m(const Aura& aura, const Path& path, double others_top_speed_m_s) 
   const double along = keep_to_paths(aura) ? std::hypot(path.v_WB.x(), path.v_WB.y()) : path.v_WB.norm();
   const double drift = along + rules.uncertainty * path.speed_m_s;
   const double zone_speed = keep_to_paths(aura) ? drift / (1 + rules.uncertainty) : speed;
-  return path.radius_m +
-         aura.zone(zone_speed, horizon::kMostHops, std::max(others_top_speed_m_s, speed), path.radius_m) +
+  return path.radius_m + aura.zone(zone_speed, horizon::kMostHops, others_top_speed_m_s, path.radius_m) +
          steps * rules.step_s * drift;
 }
+
+/// Regions within this distance of a body have to know of it. Their bodies may be as fast as the fastest one.
+double reach_of_regions_m(const Aura& aura, const Path& path, double others_top_speed_m_s) {
+  return reach_m(aura, path, std::max({others_top_speed_m_s, path.speed_m_s, path.v_WB.norm()}));
+}
+
+/// Two bodies may come together if the distance between them is at most the sum of theirs.
+double reach_of_pairs_m(const Aura& aura, const Path& path) { return reach_m(aura, path, 0); }
 
 /// Adds what a body of `host` at `p` may reach, if it may come to `territory`. Where bodies are not believed to keep to
 /// their paths, one that is over it already may come to all of it, however slow it is: a blow that nobody expects may
@@ -106,8 +115,9 @@ const std::vector<Introduction>& Introducer::look(const ForeignBodies& foreign, 
     const Foreign& body = foreign[i];
     const Vec3& p = body.path.pose.p_WB;
     const bool at_home = vicinity_.map.region(body.host).contains(p.x(), p.y());
-    const double reach = reach_m(aura_, body.path, others_top_speed_m_s);
-    add_to(guests_, aura_, vicinity_.home(), body.host, p, reach);
+    const double reach = reach_of_regions_m(aura_, body.path, others_top_speed_m_s);
+    const double reach_of_pairs = reach_of_pairs_m(aura_, body.path);
+    add_to(guests_, aura_, vicinity_.home(), body.host, p, reach_of_pairs);
     if (at_home && reach <= vicinity_.neighbour_distance_m) continue;
     for (std::uint32_t q = 0; q < vicinity_.map.size(); ++q) {
       if (vicinity_.map.distance(RegionId{q}, p) <= reach) introduce(body.host, RegionId{q});
@@ -128,20 +138,27 @@ std::vector<RegionId> related_at_start(const Aura& aura, const RegionMap& map, d
     paths.back().speed_m_s = aura.speed_of(scene.bodies[i]);
     top_speed_m_s = std::max(top_speed_m_s, paths.back().speed_m_s);
   }
-  std::vector<double> reaches;
-  for (const Path& path : paths) reaches.push_back(reach_m(aura, path, top_speed_m_s));
+  std::vector<double> reaches, reaches_of_pairs;
+  for (const Path& path : paths) {
+    reaches.push_back(reach_of_regions_m(aura, path, top_speed_m_s));
+    reaches_of_pairs.push_back(reach_of_pairs_m(aura, path));
+  }
   std::vector<RegionId> related;
+  const auto is_far = [&](RegionId other) {
+    return map.region(self).distance(map.region(other)) > neighbour_distance_m;
+  };
+  const auto relate = [&](RegionId a, RegionId b) {
+    if (a != b && (a == self || b == self) && is_far(a == self ? b : a)) related.push_back(a == self ? b : a);
+  };
   HostsReaches there;
   for (std::uint32_t q = 0; q < map.size(); ++q) {
     there.clear();
-    there.add(RegionId{q}, map.region(RegionId{q}));
     for (std::size_t i = 0; i < hosts.size(); ++i) {
-      add_to(there, aura, map.region(RegionId{q}), hosts[i], paths[i].pose.p_WB, reaches[i]);
+      const Vec3& p = paths[i].pose.p_WB;
+      if (map.distance(RegionId{q}, p) <= reaches[i]) relate(hosts[i], RegionId{q});
+      add_to(there, aura, map.region(RegionId{q}), hosts[i], p, reaches_of_pairs[i]);
     }
-    const auto is_wanted = [&](RegionId a, RegionId b) {
-      return (a == self || b == self) && map.region(a).distance(map.region(b)) > neighbour_distance_m;
-    };
-    there.for_each_meeting(is_wanted, [&](RegionId a, RegionId b) { related.push_back(a == self ? b : a); });
+    there.for_each_meeting([&](RegionId a, RegionId b) { return a == self || b == self; }, relate);
   }
   std::sort(related.begin(), related.end());
   related.erase(std::unique(related.begin(), related.end()), related.end());
