@@ -20,7 +20,9 @@ using nlohmann::json;
 
 constexpr char kMagic[] = "AURACUT3";  // the last character is the number of the format
 constexpr std::size_t kMagicBytes = 8, kFormatAt = 7;
-constexpr int kLevel = 3;
+/// Of a world of 1.5 MB, level 1 leaves 540 kB and level 3 535 kB, in 1.65 times the time. Coupled nodes spent 2% of
+/// it.
+constexpr int kLevel = 1;
 constexpr std::size_t kMostBytes = std::size_t{2} << 30U;  // uncompressed: some ten million contact points
 constexpr std::size_t kMostGrowth = 200;  // decompressed size over compressed size; equal piles reach 50
 constexpr std::size_t kMostOfHeader = 64 << 10;

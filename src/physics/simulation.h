@@ -104,6 +104,7 @@ class Simulation {
   void wake_beside(core::BodyId id);
   // Coupled regions:
   void meet_neighbours();
+  std::vector<core::ClusterState> send_halos(std::vector<Visit>& guests);
   bool is_to_be_watched(const HostedBody& body) const;
   void meet_far();
   void find_seams();

@@ -65,15 +65,40 @@ core::RegionId Simulation::host_of(const HostedBody& body) const {
 }
 
 void Simulation::meet_neighbours() {
+  arrived_.clear();
+  const std::vector<core::BodyId> guests_before = std::exchange(guests_, {});
+  std::vector<Visit> guests;  // of this region
+  const std::vector<core::ClusterState> left = send_halos(guests);
+  std::vector<Halo> received;
+  for_each_peer(*coupling_, [&](core::RegionId peer) {
+    received.push_back(fetch(peer));
+    for (const core::BodyRecord& body : received.back().for_you.bodies) arrived_.push_back({body, peer});
+  });
+  std::ranges::sort(arrived_, {}, [](const Moved& moved) { return moved.body.id; });
+  for (Halo& halo : received) {
+    for (const core::BodyId id : halo.broken) part_from(id);
+    guests.insert(guests.end(), halo.guests.begin(), halo.guests.end());
+  }
+  ++meeting_;
+  take_guests(guests);
+  for (const Halo& halo : received) take_over(halo.for_you, halo.arrivals);
+  for (const core::ClusterState& cluster : left) restore_contacts(cluster);
+  meet_far();
+  restore_late_contacts();
+  core::keep_one_of_each(guests_);
+  send_home(guests_before);
+  find_seams();
+}
+
+/// Sends each partner the bodies that it hosts from now on, and its guests. Returns the bodies that have left, with
+/// their contacts. Adds them to `guests`: they are at first guests of this region.
+std::vector<core::ClusterState> Simulation::send_halos(std::vector<Visit>& guests) {
   std::map<core::RegionId, Halo> halos;
   for_each_peer(*coupling_, [&](core::RegionId peer) { halos[peer].broken = broken_; });
   broken_.clear();
-  arrived_.clear();
   left_.clear();
   at_border_.clear();
-  const std::vector<core::BodyId> guests_before = std::exchange(guests_, {});
   std::map<core::RegionId, std::vector<core::BodyId>> leaving;
-  std::vector<Visit> guests;  // of this region
   watched_.add(notes_.for_borders, table_);
   const auto tell_of = [&](const HostedBody& body) {
     const core::RegionId host = host_of(body);
@@ -108,26 +133,7 @@ void Simulation::meet_neighbours() {
     halos[host].for_you = left[next++];
   }
   for (const auto& [peer, halo] : halos) post(peer, halo);
-
-  std::vector<Halo> received;
-  for_each_peer(*coupling_, [&](core::RegionId peer) {
-    received.push_back(fetch(peer));
-    for (const core::BodyRecord& body : received.back().for_you.bodies) arrived_.push_back({body, peer});
-  });
-  std::ranges::sort(arrived_, {}, [](const Moved& moved) { return moved.body.id; });
-  for (Halo& halo : received) {
-    for (const core::BodyId id : halo.broken) part_from(id);
-    guests.insert(guests.end(), halo.guests.begin(), halo.guests.end());
-  }
-  ++meeting_;
-  take_guests(guests);
-  for (const Halo& halo : received) take_over(halo.for_you, halo.arrivals);
-  for (const core::ClusterState& cluster : left) restore_contacts(cluster);
-  meet_far();
-  restore_late_contacts();
-  core::keep_one_of_each(guests_);
-  send_home(guests_before);
-  find_seams();
+  return left;
 }
 
 /// Throws std::logic_error unless this region exchanges parcels with all regions whose territory a body may reach.

@@ -89,6 +89,7 @@ command_line::ExitCode NodeProcess::run_steps() {
   for (;;) {
     try {
       run_until_end();
+      if (!run_.recovers()) look_for_death_at_the_end();
       const bool leaves = succession_.leaves_now() || (run_.leaving.has_begun() && succession_.can_leave_to_others());
       return leaves && !run_.restoration.is_broken_off() ? succession_.leave_to_successor() : ending_.end();
     } catch (const SomebodyDied& died) {
@@ -100,6 +101,13 @@ command_line::ExitCode NodeProcess::run_steps() {
       if (!run_.node && run_.restoration.is_broken_off()) return ending_.end_without_world();
     }
   }
+}
+
+/// A run that ends by a death is broken off on all nodes. The launcher of a node may ask it to end before it has looked
+/// for deaths: a coupled node notices nothing while it waits in the middle of a state.
+void NodeProcess::look_for_death_at_the_end() {
+  if (run_.fence.closed() || run_.has_reached_the_end()) return;
+  if (const auto why = run_.death()) run_.break_off(*why);
 }
 
 void NodeProcess::run_until_end() {

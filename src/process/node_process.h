@@ -29,6 +29,7 @@ class NodeProcess {
   command_line::ExitCode take_over();
   command_line::ExitCode not_begun();
   command_line::ExitCode run_steps();
+  void look_for_death_at_the_end();
   void run_until_end();
   bool is_over();
   bool finished();

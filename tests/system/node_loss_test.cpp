@@ -117,6 +117,16 @@ TEST_F(NodeLoss, ARunThatStopsWhenANodeDiesEndsByName) { expect_run_ends_with(2)
 
 TEST_F(NodeLoss, RegionZeroWhichStartedTheRunMayDieToo) { expect_run_ends_with(0); }
 
+/// Survivors wait in the middle of a state. The launcher asks them to end before they know why.
+TEST_F(NodeLoss, ACoupledRunThatStopsWhenANodeDiesIsBrokenOff) {
+  const Report report = report_of("run");
+  Process& run = launch("run", launch_file("demo"), kStops + set({"exchange=coupled"}));
+  ASSERT_NO_FATAL_FAILURE(expect_reaches(report, 4, 60));
+  ASSERT_NO_FATAL_FAILURE(kill_node(run, 1));
+  expect_exit(run, 1);
+  expect_survivors_break_off(report, 1);
+}
+
 // Nodes write their records to disk every 60 steps. Killed just before that, while paused, so that the step is known.
 TEST_F(NodeLoss, NoBodyOfADeadNodeIsForgotten) {
   const Report report = report_of("run");
