@@ -81,7 +81,8 @@ AURASIM_INLINE void look_at_axis(JointBlock& block, int axis, const Vec& n, cons
 }
 
 /// The effective mass of the three translations together: the inverse of the matrix that turns impulses along their
-/// axes into speeds along them.
+/// axes into speeds along them, by elimination. Bodies with arms that are far longer than they are large leave nothing
+/// but rounding of the last rows, so a row keeps a small share of its own: then the joint is softer.
 AURASIM_INLINE void look_at_shifts(JointBlock& block) {
   const Lanes inv_mass = block.inv_mass_a + block.inv_mass_b;
   Vec on_a[3], on_b[3], turned_a[3], turned_b[3];
@@ -92,12 +93,18 @@ AURASIM_INLINE void look_at_shifts(JointBlock& block) {
   }
   const auto at = [&](int i, int k) { return dot(on_a[i], turned_a[k]) + dot(on_b[i], turned_b[k]); };
   const Lanes xx = inv_mass + at(0, 0), yy = inv_mass + at(1, 1), zz = inv_mass + at(2, 2);
-  const Lanes xy = at(0, 1), xz = at(0, 2), yz = at(1, 2);
-  const Lanes c_x = yy * zz - yz * yz, c_y = xz * yz - xy * zz, c_z = xy * yz - xz * yy;
-  const Lanes per = block.whole * inverse(xx * c_x + xy * c_y + xz * c_z);
-  block.shift_mass[0] = per * c_x, block.shift_mass[1] = per * c_y, block.shift_mass[2] = per * c_z;
-  block.shift_mass[3] = per * (xx * zz - xz * xz), block.shift_mass[4] = per * (xy * xz - xx * yz);
-  block.shift_mass[5] = per * (xx * yy - xy * xy);
+  const Lanes xy = at(0, 1), xz = at(0, 2), yz = at(1, 2), least = all(Real(1e-6));
+  const Lanes per_x = inverse(xx);
+  const Lanes y_x = xy * per_x, z_x = xz * per_x;
+  const Lanes rest_y = max(yy - y_x * xy, least * yy), per_y = inverse(rest_y);
+  const Lanes z_y = (yz - z_x * xy) * per_y;
+  const Lanes per_z = inverse(max(zz - z_x * xz - z_y * z_y * rest_y, least * zz));
+  const Lanes both = y_x * z_y - z_x;
+  const Lanes whole = block.whole;
+  block.shift_mass[0] = whole * (per_x + y_x * y_x * per_y + both * both * per_z);
+  block.shift_mass[1] = whole * (-y_x * per_y - both * z_y * per_z), block.shift_mass[2] = whole * both * per_z;
+  block.shift_mass[3] = whole * (per_y + z_y * z_y * per_z), block.shift_mass[4] = whole * -z_y * per_z;
+  block.shift_mass[5] = whole * per_z;
 }
 
 AURASIM_INLINE Lanes took_most(const JointBlock& block, unsigned what) {
