@@ -21,7 +21,7 @@ struct HalfSpace {
   btScalar above(const btVector3& p) const { return normal.dot(p) - offset_m; }
 };
 
-/// Of a plane's shape in the world.
+/// The half-space below a plane's shape, in the world.
 HalfSpace half_space_of(const btCollisionShape& plane, const btTransform& pose);
 
 struct PlanePoint {
