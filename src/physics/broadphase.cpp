@@ -1,7 +1,9 @@
 #include "physics/broadphase.h"
 
 #include <algorithm>
-#include <atomic>
+#include <array>
+#include <cmath>
+#include <cstdint>
 
 #include "core/progress.h"
 
@@ -12,6 +14,8 @@ namespace {
 constexpr btScalar kMargin_m = btScalar(0.05);
 /// An object that moves gets a box for so many steps on, but not larger than twice its bounds.
 constexpr btScalar kStepsAhead = 6;
+/// A thread takes so many objects that have left their boxes at once.
+constexpr std::size_t kMovedAtOnce = 64;
 /// In each look, one pair in so many is tested for whether it is still near, but no more than so many for each object
 /// that has left its box.
 constexpr std::size_t kLooksForAll = 10, kPairsOfObject = 8;
@@ -19,6 +23,20 @@ constexpr std::size_t kLooksForAll = 10, kPairsOfObject = 8;
 constexpr std::size_t kLooksForStatics = 100;
 /// For each static that comes, so many are given a better place.
 constexpr std::size_t kPlacedForOne = 4;
+
+/// What moves is in several trees, so that several threads can change them: one for each square column of this side.
+/// Columns that are kColumns apart along x or y share a tree.
+constexpr btScalar kColumn_m = 16;
+constexpr int kColumns = 8;
+
+int column_of(btScalar x) {
+  if (!(std::abs(x) < btScalar(1e9))) return 0;
+  return static_cast<int>(static_cast<std::int64_t>(std::floor(x / kColumn_m)) & (kColumns - 1));
+}
+std::size_t column_of(const btDbvtVolume& box) {
+  const btVector3 centre = box.Center();
+  return static_cast<std::size_t>(kColumns * column_of(centre.x()) + column_of(centre.y()));
+}
 
 btDbvtVolume volume_of(const btVector3& low, const btVector3& high) { return btDbvtVolume::FromMM(low, high); }
 
@@ -39,16 +57,22 @@ struct Broadphase::Proxy : btBroadphaseProxy {
   using btBroadphaseProxy::btBroadphaseProxy;
 
   btDbvtNode* leaf = nullptr;
-  bool stands = false;  ///< it is in the tree of statics
-  int moved = -1;       ///< index in moved_; -1: it is in its box
+  bool stands = false;     ///< it is in the tree of statics
+  std::size_t column = 0;  ///< index in moving_, if it is in one of these
+  int moved = -1;          ///< index in moved_; -1: it is in its box
 };
 
 Broadphase::Proxy& Broadphase::of(btBroadphaseProxy& proxy) { return static_cast<Proxy&>(proxy); }
 const Broadphase::Proxy& Broadphase::of(const btBroadphaseProxy& proxy) { return static_cast<const Proxy&>(proxy); }
-btDbvt& Broadphase::tree_of(const Proxy& proxy) { return proxy.stands ? standing_ : moving_; }
+btDbvt& Broadphase::tree_of(const Proxy& proxy) { return proxy.stands ? standing_ : moving_[proxy.column]; }
 
 Broadphase::Broadphase(ContactPairs& pairs, soft::Team& team)
-    : pairs_(pairs), team_(team), lists_(static_cast<std::size_t>(team.size())) {}
+    : pairs_(pairs),
+      team_(team),
+      moving_(kColumns * kColumns),
+      thread_of_column_(moving_.size()),
+      pieces_(team.size()),
+      lists_(static_cast<std::size_t>(team.size())) {}
 
 Broadphase::~Broadphase() = default;
 
@@ -57,7 +81,9 @@ btBroadphaseProxy* Broadphase::createProxy(const btVector3& low, const btVector3
   auto* const proxy = new Proxy(low, high, object, group, mask);
   proxy->m_uniqueId = next_id_++;
   proxy->stands = (group & btBroadphaseProxy::StaticFilter) != 0;
-  proxy->leaf = tree_of(*proxy).insert(volume_of(low, high), proxy);
+  const btDbvtVolume box = volume_of(low, high);
+  proxy->column = column_of(box);
+  proxy->leaf = tree_of(*proxy).insert(box, proxy);
   if (proxy->stands) {
     statics_to_place_ = std::min(statics_to_place_ + kPlacedForOne, static_cast<std::size_t>(standing_.m_leaves));
   }
@@ -79,29 +105,103 @@ void Broadphase::note_moved(Proxy& proxy) {
   moved_.push_back(&proxy);
 }
 
-bool Broadphase::keep_in_box(btBroadphaseProxy& kept, const btVector3& low, const btVector3& high) {
-  Proxy& proxy = of(kept);
-  if (!proxy.leaf->volume.Contain(volume_of(low, high))) return false;
-  proxy.m_aabbMin = low, proxy.m_aabbMax = high;
+/// Sets the bounds of an object. Returns false with nothing done if they are not inside its box.
+bool Broadphase::keep_in_box(Proxy& proxy, const Bounds& bounds) {
+  if (!proxy.leaf->volume.Contain(volume_of(bounds.low, bounds.high))) return false;
+  proxy.m_aabbMin = bounds.low, proxy.m_aabbMax = bounds.high;
   return true;
 }
 
-void Broadphase::setAabb(btBroadphaseProxy* moved, const btVector3& low, const btVector3& high, btDispatcher*) {
-  if (keep_in_box(*moved, low, high)) return;
-  Proxy& proxy = of(*moved);
+/// Sets the bounds of an object that has left its box. Returns its next box.
+Broadphase::NewBox Broadphase::leave_box(Proxy& proxy, const Bounds& bounds) {
   const btVector3 margin(kMargin_m, kMargin_m, kMargin_m);
-  btVector3 ahead = (low - proxy.m_aabbMin) * kStepsAhead;
-  const btVector3 most = (high - low) / 2;
+  btVector3 ahead = (bounds.low - proxy.m_aabbMin) * kStepsAhead;
+  const btVector3 most = (bounds.high - bounds.low) / 2;
   for (int axis = 0; axis < 3; ++axis) ahead[axis] = std::clamp(ahead[axis], -most[axis], most[axis]);
-  proxy.m_aabbMin = low, proxy.m_aabbMax = high;
-  btDbvtVolume box = volume_of(low - margin, high + margin);
-  box.SignedExpand(ahead);
-  tree_of(proxy).update(proxy.leaf, box);
+  proxy.m_aabbMin = bounds.low, proxy.m_aabbMax = bounds.high;
+  NewBox box{&proxy, volume_of(bounds.low - margin, bounds.high + margin), proxy.column, proxy.column};
+  box.volume.SignedExpand(ahead);
+  if (!proxy.stands) box.to = column_of(box.volume);
+  return box;
+}
+
+void Broadphase::setAabb(btBroadphaseProxy* moved, const btVector3& low, const btVector3& high, btDispatcher*) {
+  Proxy& proxy = of(*moved);
+  if (keep_in_box(proxy, {low, high})) return;
+  NewBox box = leave_box(proxy, {low, high});
+  take_out(box);
+  put_in(box);
   note_moved(proxy);
+}
+
+void Broadphase::bound(btBroadphaseProxy& moved, const Bounds& bounds, const soft::Worker& worker) {
+  Proxy& proxy = of(moved);
+  if (keep_in_box(proxy, bounds)) return;
+  lists_[static_cast<std::size_t>(worker.number)].left.push_back(leave_box(proxy, bounds));
+}
+
+/// Takes an object out of its tree, or puts its box in another place there.
+void Broadphase::take_out(NewBox& box) {
+  Proxy& proxy = *box.proxy;
+  if (box.from == box.to) return tree_of(proxy).update(proxy.leaf, box.volume);
+  moving_[box.from].remove(proxy.leaf);
+  proxy.leaf = nullptr;
+}
+
+/// Puts an object into its next tree.
+void Broadphase::put_in(const NewBox& box) {
+  if (box.from == box.to) return;
+  box.proxy->column = box.to;
+  box.proxy->leaf = moving_[box.to].insert(box.volume, box.proxy);
+}
+
+void Broadphase::give_boxes() {
+  std::size_t count = 0;
+  for (const List& list : lists_) count += list.left.size();
+  if (count == 0) return;
+  share_columns_out(count);
+  const auto all_left = [this](auto&& visit) {
+    for (List& list : lists_) std::ranges::for_each(list.left, visit);
+  };
+  team_.side_by_side([&](const soft::Worker& worker) {
+    all_left([&](NewBox& box) {
+      if (thread_of_column_[box.from] == worker.number) take_out(box);
+    });
+    worker.wait();
+    all_left([&](const NewBox& box) {
+      if (thread_of_column_[box.to] == worker.number) put_in(box);
+    });
+  });
+  all_left([this](const NewBox& box) { note_moved(*box.proxy); });
+  for (List& list : lists_) list.left.clear();
+}
+
+/// Gives each thread columns in which about equally many objects have left their boxes.
+void Broadphase::share_columns_out(std::size_t count) {
+  std::array<std::size_t, kColumns * kColumns> left{};
+  for (const List& list : lists_) {
+    for (const NewBox& box : list.left) ++left[box.from];
+  }
+  const auto threads = static_cast<std::size_t>(team_.employed());
+  std::size_t before = 0;
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    thread_of_column_[i] = static_cast<int>(std::min(threads - 1, (2 * before + left[i]) * threads / (2 * count)));
+    before += left[i];
+  }
 }
 
 void Broadphase::getAabb(btBroadphaseProxy* proxy, btVector3& low, btVector3& high) const {
   low = proxy->m_aabbMin, high = proxy->m_aabbMax;
+}
+
+/// All trees that are not empty.
+std::vector<const btDbvt*> Broadphase::trees() const {
+  std::vector<const btDbvt*> trees;
+  for (const btDbvt& tree : moving_) {
+    if (!tree.empty()) trees.push_back(&tree);
+  }
+  if (!standing_.empty()) trees.push_back(&standing_);
+  return trees;
 }
 
 void Broadphase::rayTest(const btVector3& from, const btVector3& to, btBroadphaseRayCallback& callback,
@@ -109,7 +209,7 @@ void Broadphase::rayTest(const btVector3& from, const btVector3& to, btBroadphas
   if (statics_ != nullptr) bring_statics_on_way(from, to, {low, high});
   ForRays each;
   btAlignedObjectArray<const btDbvtNode*> stack;
-  for (const btDbvt* tree : {&moving_, &standing_}) {
+  for (const btDbvt* tree : trees()) {
     tree->rayTestInternal(tree->m_root, from, to, callback.m_rayDirectionInverse, callback.m_signs,
                           callback.m_lambda_max, low, high, stack, each);
   }
@@ -135,10 +235,11 @@ void Broadphase::bring_statics_on_way(const btVector3& from, const btVector3& to
 }
 
 bool Broadphase::has_body_near(const Bounds& where) const {
-  if (moving_.empty()) return false;
   const btDbvtVolume box = volume_of(where.low, where.high);
   btAlignedObjectArray<const btDbvtNode*> stack;
-  stack.push_back(moving_.m_root);
+  for (const btDbvt& tree : moving_) {
+    if (!tree.empty()) stack.push_back(tree.m_root);
+  }
   while (stack.size() > 0) {
     const btDbvtNode* const node = stack[stack.size() - 1];
     stack.pop_back();
@@ -151,20 +252,18 @@ bool Broadphase::has_body_near(const Bounds& where) const {
 
 void Broadphase::aabbTest(const btVector3& low, const btVector3& high, btBroadphaseAabbCallback& callback) {
   ForBoxes each(callback);
-  for (const btDbvt* tree : {&moving_, &standing_}) tree->collideTV(tree->m_root, volume_of(low, high), each);
+  for (const btDbvt* tree : trees()) tree->collideTV(tree->m_root, volume_of(low, high), each);
 }
 
 void Broadphase::getBroadphaseAabb(btVector3& low, btVector3& high) const {
   low = high = btVector3(0, 0, 0);
-  for (const btDbvt* tree : {&moving_, &standing_}) {
-    if (tree->empty()) continue;
+  for (const btDbvt* tree : trees()) {
     low.setMin(tree->m_root->volume.Mins()), high.setMax(tree->m_root->volume.Maxs());
   }
 }
 
 void Broadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
-  constexpr std::size_t kAtOnce = 64;
-  moving_.optimizeIncremental(1);
+  moving_[next_to_improve_++ % moving_.size()].optimizeIncremental(1);
   if (statics_to_place_ > 0) {
     const std::size_t now = std::min(statics_to_place_, 1 + statics_to_place_ / kLooksForStatics);
     standing_.optimizeIncremental(static_cast<int>(now));
@@ -177,15 +276,15 @@ void Broadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
   }
   if (moved_.empty()) return;
   if (statics_ != nullptr) bring_statics();
-  std::atomic<std::size_t> taken = 0;
+  pieces_.begin(moved_.size(), team_.employed(), kMovedAtOnce);
   team_.side_by_side([&](const soft::Worker& worker) {
     List& list = lists_[static_cast<std::size_t>(worker.number)];
-    for (std::size_t first = taken.fetch_add(kAtOnce); first < moved_.size(); first = taken.fetch_add(kAtOnce)) {
+    pieces_.work_off(worker, [&](std::size_t first, std::size_t last) {
       core::Progress::mark();
-      for (std::size_t i = first; i < std::min(moved_.size(), first + kAtOnce); ++i) {
+      for (std::size_t i = first; i < last; ++i) {
         if (moved_[i] != nullptr) look(list, *moved_[i]);
       }
-    }
+    });
   });
   for (Proxy* proxy : moved_) {
     if (proxy != nullptr) proxy->moved = -1;
@@ -207,13 +306,13 @@ void Broadphase::bring_statics() {
 
 /// Finds what is near an object and has no pair with it yet.
 void Broadphase::look(List& list, Proxy& proxy) {
-  look_in(moving_, list, proxy);
+  for (const btDbvt& tree : moving_) look_in(tree, list, proxy);
   if (!proxy.stands) look_in(standing_, list, proxy);
 }
 
 void Broadphase::look_in(const btDbvt& tree, List& list, Proxy& proxy) {
-  if (tree.empty()) return;
   const btDbvtVolume& box = proxy.leaf->volume;
+  if (tree.empty() || !Intersect(tree.m_root->volume, box)) return;
   list.stack.assign(1, tree.m_root);
   while (!list.stack.empty()) {
     const btDbvtNode* const node = list.stack.back();

@@ -1,5 +1,6 @@
-// Finds pairs of objects that are near each other, with two trees of boxes: one of what moves, one of statics. A box in
-// a tree is larger than the bounds of its object, so most objects that move slowly stay in theirs.
+// Finds pairs of objects that are near each other, with trees of boxes: one of statics, and one for each column of the
+// world with what moves there. A box in a tree is larger than the bounds of its object, so most objects that move
+// slowly stay in theirs.
 //
 // Only objects that have left their boxes since the last look are looked at, by all threads. The order of pairs, and
 // pairs that are near no more, depend on the past. Nothing that is computed may depend on them.
@@ -43,9 +44,10 @@ class Broadphase final : public btBroadphaseInterface {
   /// The next object gets this unique id, by which the two objects of a pair are ordered.
   void number_next(int id) { next_id_ = id; }
 
-  /// Sets the bounds of an object if they are inside its box; returns false with nothing done if not. Several threads
-  /// may call it for different objects.
-  static bool keep_in_box(btBroadphaseProxy& proxy, const btVector3& low, const btVector3& high);
+  /// Sets the bounds of an object. Workers may call it for different objects. Call give_boxes() after that.
+  void bound(btBroadphaseProxy& proxy, const Bounds& bounds, const soft::Worker& worker);
+  /// Gives new boxes to the objects that have left theirs in bound().
+  void give_boxes();
 
   btBroadphaseProxy* createProxy(const btVector3& low, const btVector3& high, int shape, void* object, int group,
                                  int mask, btDispatcher* dispatcher) override;
@@ -68,15 +70,27 @@ class Broadphase final : public btBroadphaseInterface {
   struct Near {
     Proxy *one, *other;
   };
+  struct NewBox {
+    Proxy* proxy;
+    btDbvtVolume volume;
+    std::size_t from, to;  ///< columns
+  };
   /// Results of one thread.
   struct alignas(64) List {
     std::vector<const btDbvtNode*> stack;
     std::vector<Near> found;
+    std::vector<NewBox> left;  ///< of objects that have left their boxes
   };
 
   static Proxy& of(btBroadphaseProxy& proxy);
   static const Proxy& of(const btBroadphaseProxy& proxy);
   btDbvt& tree_of(const Proxy& proxy);
+  std::vector<const btDbvt*> trees() const;
+  static bool keep_in_box(Proxy& proxy, const Bounds& bounds);
+  static NewBox leave_box(Proxy& proxy, const Bounds& bounds);
+  void take_out(NewBox& box);
+  void put_in(const NewBox& box);
+  void share_columns_out(std::size_t count);
   void note_moved(Proxy& proxy);
   void bring_statics();
   void bring_statics_on_way(const btVector3& from, const btVector3& to, const Bounds& around);
@@ -88,8 +102,12 @@ class Broadphase final : public btBroadphaseInterface {
   ContactPairs& pairs_;
   soft::Team& team_;
   int next_id_ = 0;
-  btDbvt moving_, standing_;
-  std::vector<Proxy*> moved_;  ///< objects that have left their boxes; null: removed since
+  std::vector<btDbvt> moving_;  ///< by column
+  btDbvt standing_;
+  std::vector<int> thread_of_column_;  ///< in give_boxes()
+  std::size_t next_to_improve_ = 0;    ///< index in moving_
+  std::vector<Proxy*> moved_;          ///< objects that have left their boxes; null: removed since
+  soft::Pieces pieces_;                ///< of moved_
   std::vector<List> lists_;
   BringsStatics* statics_ = nullptr;
   std::vector<Bounds> looked_in_;     ///< boxes in which pairs are about to be looked for

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -18,16 +19,14 @@ class ChangedBodies {
  public:
   void note(core::BodyId id) {
     if (all_) return;
-    if (ids_.size() > known_ && !(ids_.back() < id)) {
-      // Steps note their bodies in ascending order, so here the next step begins. Merging is faster than sorting.
-      if (ascends_ && 2 * (ids_.size() - known_) >= known_) {
-        sort_out();
-      } else {
-        ascends_ = false;
-      }
-    }
     ids_.push_back(id);
-    if (ids_.size() > 2 * known_ + kFew && !ascends_) sort_out();
+    if (ids_.size() > 2 * known_ + kFew) sort_out();
+  }
+  /// Notes many bodies, ascending.
+  void note(std::span<const core::BodyId> ids) {
+    if (all_) return;
+    sort_out();
+    add(ids);
   }
   /// Any body may have changed.
   void note_all() {
@@ -45,13 +44,12 @@ class ChangedBodies {
   void clear() {
     ids_.clear();
     known_ = 0;
-    ascends_ = true;
     all_ = false;
   }
 
   /// Frees the memory that many noted bodies have used.
   void free_spare_memory() {
-    merged_ = {};
+    fresh_ = {}, merged_ = {};
     ids_.shrink_to_fit();
   }
 
@@ -73,23 +71,28 @@ class ChangedBodies {
   static constexpr std::size_t kFew = 256;
 
   void sort_out() {
-    const auto noted_since = ids_.begin() + static_cast<std::ptrdiff_t>(known_);
-    if (!ascends_) {
-      core::keep_one_of_each(ids_);
-    } else if (known_ > 0 && noted_since != ids_.end()) {
+    if (ids_.size() == known_) return;
+    fresh_.assign(ids_.begin() + static_cast<std::ptrdiff_t>(known_), ids_.end());
+    ids_.resize(known_);
+    core::keep_one_of_each(fresh_);
+    add(fresh_);
+  }
+  /// Adds `ids`, ascending. Precondition: the noted ones are sorted.
+  void add(std::span<const core::BodyId> ids) {
+    if (ids_.empty()) {
+      ids_.assign(ids.begin(), ids.end());
+    } else if (!std::ranges::includes(ids_, ids)) {
       merged_.clear();
-      std::set_union(ids_.begin(), noted_since, noted_since, ids_.end(), std::back_inserter(merged_));
+      std::ranges::set_union(ids_, ids, std::back_inserter(merged_));
       std::swap(ids_, merged_);
     }
     known_ = ids_.size();
-    ascends_ = true;
   }
 
   bool all_ = false;
   std::vector<core::BodyId> ids_;
-  std::vector<core::BodyId> merged_;  ///< scratch
-  std::size_t known_ = 0;             ///< length of ids_ when it was last sorted
-  bool ascends_ = true;               ///< what was noted since is in ascending order
+  std::size_t known_ = 0;                     ///< so many of ids_ are sorted, without duplicates
+  std::vector<core::BodyId> fresh_, merged_;  ///< scratch
 };
 
 }  // namespace aurasim::physics

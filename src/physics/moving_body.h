@@ -44,6 +44,12 @@ class MovingBody final : public btRigidBody {
 inline BodyPlace& place_of(btRigidBody& body) { return *static_cast<BodyPlace*>(body.getUserPointer()); }
 inline const BodyPlace& place_of(const btRigidBody& body) { return *static_cast<BodyPlace*>(body.getUserPointer()); }
 
+/// Moves a body. Leaves out Bullet's pose for interpolation, which nothing here reads.
+inline void move_to(btRigidBody& body, const btTransform& X_WB) {
+  body.setWorldTransform(X_WB);
+  body.updateInertiaTensor();
+}
+
 /// Call after the activation state or the block of a body has been changed outside of a step.
 inline void note_change(const btRigidBody& body) {
   const auto* const place = static_cast<const BodyPlace*>(body.getUserPointer());

@@ -34,6 +34,11 @@ inline void prefetch_points(const btPersistentManifold& manifold) {
   if (count > 0) prefetch(&manifold.getContactPoint(0), static_cast<std::size_t>(count) * sizeof(btManifoldPoint));
 }
 
+/// Prefetches the impulses of a contact point.
+inline void prefetch_impulses(const btManifoldPoint& point) {
+  prefetch(&point.m_appliedImpulse, 4 * sizeof(btScalar));  // the other impulses follow in memory
+}
+
 inline void prefetch_pair(const btBroadphasePair& pair) {
   prefetch(pair.m_pProxy0, sizeof(btBroadphaseProxy));
   prefetch(pair.m_pProxy1, sizeof(btBroadphaseProxy));

@@ -150,6 +150,7 @@ void Simulation::put_in(std::span<const core::BodyRecord> bodies) {
 /// Puts bodies into the table. They wait for insert_born().
 void Simulation::insert(std::vector<HostedBody> arrivals) {
   forget_moved();
+  findings_.forget();
   for (const HostedBody& body : arrivals) unborn_.push_back(body.id);
   table_.insert(std::move(arrivals));
   next_birth_ = std::min(next_birth_, step_);  // they have not been asked yet
@@ -274,6 +275,7 @@ void Simulation::step() {
     joints_.finish_look(world_);
   }
   note_moved();
+  findings_.look(table_, notes_.for_step, settings_.block_m, world_.team());
   if (used_room_.is_spare(moved_count_)) free_spare_memory();
   world_.team().rest();
   stop_pushing();
@@ -285,6 +287,7 @@ void Simulation::step() {
   insert_born();
   settle_blocks();
   notes_.for_step.clear();
+  findings_.forget();
 }
 
 /// Notes the bodies that the step has moved, and their contacts.
@@ -296,10 +299,14 @@ void Simulation::note_moved() {
   if (!world_.knows_moved() || std::exchange(will_stop_sleepers_, false)) return notes_.note_all();
   moved_count_ = world_.moved().size();
   const auto place_of = [](const btRigidBody* body) { return static_cast<std::uint32_t>(body->getUserIndex()); };
-  for (const btRigidBody* body : world_.moved()) moved_.push_back(place_of(body));
+  moved_.resize(moved_count_);
+  world_.team().for_each(moved_count_, [&](std::size_t i) { moved_[i] = place_of(world_.moved()[i]); });
   sort_places(moved_);
-  for (const std::uint32_t place : moved_) notes_.note_moved(table_[place].id);
+  moved_ids_.clear();
+  for (const std::uint32_t place : moved_) moved_ids_.push_back(table_[place].id);
+  notes_.note_moved(moved_ids_);
   for (const btRigidBody* body : world_.called()) notes_.note(table_[place_of(body)].id);
+  if (!notes_.wants_contacts()) return;
   touched_.clear();
   world_.add_contacts_of_moved(touched_);
   const auto ref = [this](int index) -> core::ObjectRef {
@@ -314,9 +321,10 @@ void Simulation::note_moved() {
 /// Frees the memory that steps with many awake bodies have used. What the lists hold stays.
 void Simulation::free_spare_memory() {
   notes_.free_spare_memory();
+  findings_.free_spare_memory();
   world_.first_contacts().free_spare_memory();
   core::free_memory(touched_, unsorted_contacts_, contacts_before_, copied_contacts_, found_contacts_, collisions_);
-  moved_.shrink_to_fit(), moved_contacts_.shrink_to_fit();
+  moved_.shrink_to_fit(), moved_ids_.shrink_to_fit(), moved_contacts_.shrink_to_fit();
   snapshot_.changed.shrink_to_fit(), snapshot_.changed_contacts.shrink_to_fit();
   if (table_.size() > kManyBodies) give_memory_back();
 }

@@ -19,6 +19,7 @@
 #include "physics/contact_records.h"
 #include "physics/coupling.h"
 #include "physics/dynamics_world.h"
+#include "physics/findings.h"
 #include "physics/halo.h"
 #include "physics/held_statics.h"
 #include "physics/joint_table.h"
@@ -253,12 +254,14 @@ class Simulation {
 
   mutable std::vector<KeyedContact> copied_contacts_;  ///< of copy_all(), kept for its memory
   StateNotes notes_;
+  Findings findings_;  ///< about the bodies of notes_.for_step
   KeptHash hash_;
   bool will_stop_sleepers_ = false;   ///< the next step may change sleepers
   std::vector<core::BodyId> unborn_;  ///< all bodies that are not born yet, and perhaps some that have left
   core::Step next_birth_ = 0;         ///< no body is born before
   int steps_since_snapshot_ = 0;
   std::vector<std::uint32_t> moved_;           ///< places of the bodies that the last step has moved
+  std::vector<core::BodyId> moved_ids_;        ///< scratch: their ids
   std::vector<core::Contact> moved_contacts_;  ///< their contacts, in no order
   std::size_t moved_count_ = 0;                ///< of bodies that the last step has moved
   core::UsedRoom used_room_;                   ///< of lists with an item for each of these bodies

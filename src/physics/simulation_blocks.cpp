@@ -11,17 +11,14 @@ void Simulation::settle_blocks() {
   const bool mechanisms_changed = joints_.mechanisms_changed();
   if (mechanisms_changed) {
     bind_mechanisms();
+    findings_.forget();
     notes_.for_snapshot.note_all();  // its joints are others
     notes_.for_step.note_all();      // bodies that were bound have blocks of their own
   }
   bool any_left = false;
-  notes_.for_step.for_each(table_, [&](const HostedBody& body, std::size_t) {
-    if (!body.born || !body.rigid->isActive()) return;  // only awake bodies have moved
-    BodyPlace& place = place_of(*body.rigid);
-    if (place.is_bound || place.is_guest) return;
-    const core::Vec3 p_WB = from_bullet(body.rigid->getWorldTransform().getOrigin());
-    if (!core::leaves(p_WB, place.block, settings_.block_m)) return;
-    place.block = core::block_at(p_WB, settings_.block_m);
+  findings_.for_each(Findings::kLeftBlock, table_, notes_.for_step, settings_.block_m, [&](const HostedBody& body) {
+    place_of(*body.rigid).block =
+        core::block_at(from_bullet(body.rigid->getWorldTransform().getOrigin()), settings_.block_m);
     notes_.note_block(body.id);
     any_left = true;
   });

@@ -113,8 +113,7 @@ void Simulation::kick(btRigidBody& body, const core::Order& order) {
 /// body's state depends on its island alone.
 void Simulation::take_out_what_broke() {
   std::vector<Removal> broken;
-  notes_.for_step.for_each(table_, [&](const HostedBody& body, std::size_t) {
-    if (!body.born || is_guest(*body.rigid) || !has_broken_down(*body.rigid)) return;
+  findings_.for_each(Findings::kBroken, table_, notes_.for_step, settings_.block_m, [&](const HostedBody& body) {
     broken.push_back({step_, body.id, fault_of(*body.rigid)});
   });
   for (const Removal& removal : broken) {

@@ -35,23 +35,27 @@ bool same(const core::Contact& x, const core::Contact& y) { return x.a == y.a &&
 /// A body's pose, velocity, activation state or block may have changed.
 void Simulation::note(core::BodyId id) {
   notes_.note(id);
+  findings_.forget();
   snapshot_is_fresh_ = records_are_fresh_ = false;
 }
 
 /// A body has come, or has been born.
 void Simulation::note_new(core::BodyId id) {
   notes_.note_new(id);
+  findings_.forget();
   snapshot_is_fresh_ = records_are_fresh_ = false;
 }
 
 void Simulation::note_all() {
   notes_.note_all();
+  findings_.forget();
   snapshot_is_fresh_ = records_are_fresh_ = false;
 }
 
 /// Takes bodies out of the table, by place, ascending. They have left Bullet's world already.
 void Simulation::erase(std::span<const std::uint32_t> leaving) {
   forget_moved();
+  findings_.forget();
   for (const std::uint32_t place : leaving) {
     hash_.drop(table_[place]);
     notes_.note_gone(table_[place].id);

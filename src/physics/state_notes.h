@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -64,11 +65,14 @@ struct StateNotes {
     for_copy.note(id);
     parted.note(id);
   }
-  /// The last step has computed the body.
-  void note_moved(core::BodyId id) {
-    note(id);
-    parted.note(id);
+  /// The last step has computed these bodies, ascending.
+  void note_moved(std::span<const core::BodyId> ids) {
+    for (ChangedBodies* reader : {&for_snapshot, &for_hash, &for_step, &for_borders, &for_copy, &parted}) {
+      reader->note(ids);
+    }
   }
+  /// Does a reader want the contacts of the bodies that the last step has computed?
+  bool wants_contacts() const { return !for_snapshot.all() || !parted.all(); }
   void note_pair(core::ObjectRef a, core::ObjectRef b) {
     if (parted.all()) return;
     pairs.emplace_back(std::min(a, b), std::max(a, b));

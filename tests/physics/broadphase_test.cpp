@@ -37,12 +37,19 @@ class Boxes {
   }
   /// Moves all that is not static by up to `most_m` along each axis.
   void move(double most_m) {
+    std::vector<std::pair<btBroadphaseProxy*, Bounds>> moved;
     for (btBroadphaseProxy* proxy : all_) {
       if (is_static(*proxy)) continue;
       const btVector3 by(uniform(random_, -most_m, most_m), uniform(random_, -most_m, most_m),
                          uniform(random_, -most_m, most_m));
-      broadphase_.setAabb(proxy, proxy->m_aabbMin + by, proxy->m_aabbMax + by, nullptr);
+      moved.push_back({proxy, {proxy->m_aabbMin + by, proxy->m_aabbMax + by}});
     }
+    team_.employ_for(10000);
+    team_.side_by_side([&](const soft::Worker& worker) {
+      const auto [first, last] = worker.share(moved.size());
+      for (std::size_t i = first; i < last; ++i) broadphase_.bound(*moved[i].first, moved[i].second, worker);
+    });
+    broadphase_.give_boxes();
   }
   void look() { broadphase_.calculateOverlappingPairs(nullptr); }
   int pairs() const { return pairs_.getNumOverlappingPairs(); }
@@ -71,7 +78,8 @@ class Boxes {
   static bool is_static(const btBroadphaseProxy& proxy) {
     return proxy.m_collisionFilterGroup == btBroadphaseProxy::StaticFilter;
   }
-  btVector3 place() { return {uniform(random_, 0, 12), uniform(random_, 0, 12), uniform(random_, 0, 4)}; }
+  /// Around a corner of four columns, each of which has a tree.
+  btVector3 place() { return {uniform(random_, 10, 22), uniform(random_, -6, 6), uniform(random_, 0, 4)}; }
   double size() { return uniform(random_, 0.2, 1.5); }
 
   std::mt19937_64 random_{11};

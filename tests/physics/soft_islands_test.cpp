@@ -36,10 +36,11 @@ class SoftIslandsTest : public ::testing::Test {
   std::uint32_t slot(std::size_t i) const { return slot_of(*bodies_[i]); }
   SleepersTouch touch(std::size_t i, std::size_t j) const { return {slot(i), slot(j)}; }
   void step(const std::vector<SleepersTouch>& touches) {
-    islands_.call();
+    islands_.call(team_);
+    for (const btRigidBody* body : islands_.awake()) islands_.look_at(*body);
     islands_.find_parts({}, touches, {});
-    islands_.settle({}, {}, {});
-    islands_.rest(btScalar(0.01));
+    islands_.settle({}, {});
+    islands_.rest(btScalar(0.01), team_);
   }
   void wake(std::size_t i) {
     bodies_[i]->setDeactivationTime(0);
@@ -55,10 +56,11 @@ class SoftIslandsTest : public ::testing::Test {
   btSphereShape shape_{1};
   std::array<std::unique_ptr<MovingBody>, 6> bodies_;
   SoftIslands islands_;
+  soft::Team team_{1};
 };
 
 TEST_F(SoftIslandsTest, SleepersAreKnownOnceTheirTouchesHaveBeenFound) {
-  islands_.call();
+  islands_.call(team_);
   EXPECT_TRUE(islands_.forgotten().empty());
   EXPECT_TRUE(islands_.are_at_rest());
 }
@@ -79,12 +81,12 @@ TEST_F(SoftIslandsTest, ASleeperThatComesIsFoundAlone) {
   guest.forceActivationState(ISLAND_SLEEPING);
   guest.setDeactivationTime(3);
   islands_.insert(guest);
-  islands_.call();
+  islands_.call(team_);
   ASSERT_EQ(islands_.forgotten().size(), 1);
   EXPECT_EQ(islands_.forgotten()[0], slot_of(guest));
   const std::vector<SleepersTouch> touches = {{slot_of(guest), slot(2)}};
   islands_.find_parts({}, touches, {});
-  islands_.settle({}, {}, {});
+  islands_.settle({}, {});
   wake(0);
   step({});
   EXPECT_TRUE(islands_.moves(slot_of(guest)));
@@ -96,14 +98,14 @@ TEST_F(SoftIslandsTest, AWakingPartForgetsNoOther) {
   wake(4);
   step({});
   EXPECT_EQ(moving(), (std::vector<bool>{false, false, false, true, true, true}));
-  islands_.call();
+  islands_.call(team_);
   EXPECT_TRUE(islands_.forgotten().empty());
 }
 
 TEST_F(SoftIslandsTest, ASleeperWithAnotherBlockLeavesItsPart) {
   place_of(*bodies_[2]).block = {1, 0};
   note_change(*bodies_[2]);
-  islands_.call();
+  islands_.call(team_);
   const std::vector<std::uint32_t> row = {slot(0), slot(1), slot(2)};
   EXPECT_TRUE(std::ranges::is_permutation(islands_.forgotten(), row));
 }

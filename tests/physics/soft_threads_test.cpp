@@ -77,6 +77,30 @@ TEST(SoftThreads, WhereOthersHaveTheCoresOneThreadWorksAlone) {
   EXPECT_EQ(team.employed(), 2);
 }
 
+/// Each item is taken once, also where one thread is so slow that the others take pieces of its share.
+TEST(SoftThreads, HelpEachOtherWithPieces) {
+  constexpr std::size_t kItems = 1000;
+  soft::Team team(3);
+  soft::Pieces pieces(team.size());
+  for (const std::size_t items : {kItems, std::size_t{0}, std::size_t{1}}) {
+    std::vector<std::atomic<int>> taken(items);
+    std::atomic<std::size_t> by_slow_one = 0;
+    pieces.begin(items, team.employed(), 7);
+    team.side_by_side([&](const soft::Worker& worker) {
+      pieces.work_off(worker, [&](std::size_t first, std::size_t last) {
+        EXPECT_LT(first, last);
+        EXPECT_LE(last - first, 7);
+        for (std::size_t i = first; i < last; ++i) ++taken[i];
+        if (worker.number != 1) return;
+        by_slow_one += last - first;
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      });
+    });
+    for (const std::atomic<int>& times : taken) EXPECT_EQ(times, 1);
+    if (items == kItems) EXPECT_LT(by_slow_one, kItems / 3);
+  }
+}
+
 TEST(SoftThreads, AreFewerForFewBodies) {
   soft::Team team(8);
   const auto workers_for = [&](std::size_t bodies) {

@@ -1,7 +1,6 @@
 #include "physics/soft/contacts.h"
 
 #include <algorithm>
-#include <atomic>
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
@@ -35,6 +34,8 @@ constexpr btScalar kLongWay_m = btScalar(0.005);
 /// Contacts ahead of time are computed at a pose where the bodies overlap by this, m.
 constexpr btScalar kOverlap_m = btScalar(0.002);
 
+/// A thread takes so many pairs at once.
+constexpr std::size_t kPairsAtOnce = 128;
 /// Bounds are prefetched so many pairs ahead.
 constexpr int kBoundsDistance = 24;
 
@@ -112,19 +113,18 @@ btVector3 SoftContacts::way(const btCollisionObject& object, const btVector3& gr
 
 void SoftContacts::look(btOverlappingPairCache& pairs, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info,
                         const btVector3& gravity) {
-  constexpr int kAtOnce = 128;  // pairs
   gravity_ = gravity;
   for (List& list : lists_) {
     list.touches.clear(), list.touches_of_sleepers.clear(), list.patches.clear(), list.will_meet.clear();
     list.came.clear(), list.parted.clear();
   }
   const int count = islands_.are_at_rest() ? 0 : pairs.getNumOverlappingPairs();
-  std::atomic<int> taken = 0;
+  pieces_.begin(static_cast<std::size_t>(count), team_.employed(), kPairsAtOnce);
   team_.side_by_side([&](const soft::Worker& worker) {
     List& list = lists_[static_cast<std::size_t>(worker.number)];
-    for (int first = taken.fetch_add(kAtOnce); first < count; first = taken.fetch_add(kAtOnce)) {
-      look(list, pairs, first, std::min(count, first + kAtOnce), dispatcher, info);
-    }
+    pieces_.work_off(worker, [&](std::size_t first, std::size_t last) {
+      look(list, pairs, static_cast<int>(first), static_cast<int>(last), dispatcher, info);
+    });
     worker.wait();
     gather(worker);
   });

@@ -40,6 +40,7 @@ class SoftContacts {
         team_(team),
         islands_(islands),
         first_contacts_(first_contacts),
+        pieces_(team.size()),
         lists_(static_cast<std::size_t>(team.size())) {}
 
   /// Bounds of the bodies that are awake in the next look(). Those of others need not be known.
@@ -112,6 +113,7 @@ class SoftContacts {
   btVector3 gravity_{0, 0, 0};
   const SoftIslands& islands_;
   const FirstContacts& first_contacts_;
+  soft::Pieces pieces_;  ///< of the list of pairs
   std::vector<List> lists_;
   std::vector<SoftTouch> touches_;
   std::vector<SleepersTouch> touches_of_sleepers_;

@@ -6,6 +6,7 @@
 
 #include "physics/bullet_convert.h"
 #include "physics/free_rotation.h"
+#include "physics/moving_body.h"
 
 namespace aurasim::physics {
 namespace {
@@ -33,12 +34,12 @@ void fly_freely(btRigidBody& body, const btVector3& gravity, btScalar step_s) {
     const Rotation now{from_bullet(start.getBasis()), from_bullet(body.getAngularVelocity())};
     const Rotation after = rotate_freely(now, *inertia, static_cast<double>(step_s));
     body.setAngularVelocity(to_bullet(after.w_WB));
-    body.proceedToTransform(btTransform(to_bullet(after.R_WB), p));
+    move_to(body, btTransform(to_bullet(after.R_WB), p));
   } else if (!body.getAngularVelocity().isZero()) {
     const btQuaternion q = turn_by(body.getAngularVelocity() * step_s) * start.getRotation();
-    body.proceedToTransform(btTransform(q.normalized(), p));
+    move_to(body, btTransform(q.normalized(), p));
   } else {
-    body.proceedToTransform(btTransform(start.getBasis(), p));
+    move_to(body, btTransform(start.getBasis(), p));
   }
 }
 

@@ -5,7 +5,6 @@
 #include <numeric>
 #include <utility>
 
-#include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include "core/used_room.h"
@@ -52,7 +51,7 @@ void SoftIslands::insert(btRigidBody& body) {
   if (free_.empty()) {
     free_.push_back(static_cast<std::uint32_t>(states_.size()));
     parents_.push_back(free_.back()), next_.push_back(free_.back());
-    states_.push_back(0), parts_.push_back(0), entries_.emplace_back();
+    states_.push_back(0), parts_.push_back(0), urges_.push_back(0), entries_.emplace_back();
   }
   const std::uint32_t slot = free_.back();
   free_.pop_back();
@@ -87,7 +86,7 @@ void SoftIslands::forget_past() {
 
 void SoftIslands::free_spare_memory() {
   touches_ = {};
-  core::free_memory(joints_, order_);
+  core::free_memory(order_, notes_);
   seams_.shrink_to_fit();
   for (auto* list : {&called_, &changes_, &settling_, &marked_, &forgotten_, &found_}) list->shrink_to_fit();
   awake_.shrink_to_fit();
@@ -140,19 +139,24 @@ void SoftIslands::drop_seams(std::uint32_t slot) {
   while (seams_of_sleepers_.has(slot)) seams_of_sleepers_.take(seams_of_sleepers_.first(slot) / 2);
 }
 
-void SoftIslands::call() {
+void SoftIslands::call(soft::Team& team) {
   for (const std::uint32_t slot : changes_) {
     if (btRigidBody* const body = entries_[slot].body) put_into(body->isActive() ? List::kAwake : List::kAsleep, slot);
   }
   changes_.clear();
   if (!is_in_order_) put_in_order();
-  for (std::size_t i = 0; i < awake_.size(); ++i) {
-    if (i + kPrefetchDistance < awake_.size()) prefetch_flags(*awake_[i + kPrefetchDistance]);
-    note(*awake_[i]);
-  }
+  notes_.resize(awake_.size());
+  team.side_by_side([this](const soft::Worker& worker) {
+    const auto [first, last] = worker.share(awake_.size());
+    for (std::size_t i = first; i < last; ++i) {
+      if (i + kPrefetchDistance < last) prefetch_flags(*awake_[i + kPrefetchDistance]);
+      notes_[i] = look_for_changes(*awake_[i]);
+    }
+  });
+  for (const Note& of : notes_) note(of);
   std::erase_if(settling_, [this](std::uint32_t slot) {
     Entry& entry = entries_[slot];
-    if (entry.list == List::kAsleep) note(*entry.body);
+    if (entry.list == List::kAsleep) note(look_for_changes(*entry.body));
     entry.settles = entry.list == List::kAsleep && !has(slot, kSlept);
     return !entry.settles;
   });
@@ -160,9 +164,16 @@ void SoftIslands::call() {
 
 /// Puts the awake bodies in the order of their slots, as they mostly lie in memory.
 void SoftIslands::put_in_order() {
+  constexpr std::size_t kMany = 16;  // slots for each awake body
   order_.clear();
-  for (const btRigidBody* body : awake_) order_.push_back(slot_of(*body));
-  std::ranges::sort(order_);
+  if (kMany * awake_.size() < entries_.size()) {
+    for (const btRigidBody* body : awake_) order_.push_back(slot_of(*body));
+    std::ranges::sort(order_);
+  } else {
+    for (std::uint32_t slot = 1; slot < entries_.size(); ++slot) {
+      if (entries_[slot].list == List::kAwake) order_.push_back(slot);
+    }
+  }
   for (std::size_t i = 0; i < order_.size(); ++i) {
     awake_[i] = entries_[order_[i]].body;
     entries_[order_[i]].place = static_cast<std::uint32_t>(i);
@@ -170,18 +181,22 @@ void SoftIslands::put_in_order() {
   is_in_order_ = true;
 }
 
-/// Brings what is known of a body up to date. Sleepers are skipped once nothing of it changes any more.
-void SoftIslands::note(btRigidBody& body) {
+/// Looks at a body. Several threads may look at different ones.
+SoftIslands::Note SoftIslands::look_for_changes(const btRigidBody& body) {
   const std::uint32_t slot = slot_of(body);
   const core::Block& block = place_of(body).block;
-  const bool sleeps = !body.isActive();
   const bool is_kept = has(slot, kKept) && entries_[slot].block == block;
-  if (!sleeps || !is_kept) dissolve(slot);
-  if (sleeps && !is_kept) forget(slot);
   entries_[slot].block = block;
-  if (is_called(body)) called_.push_back(slot);
-  const int before = (has(slot, kSleeps) ? kSlept : 0) | (states_[slot] & kForgotten);
-  states_[slot] = static_cast<std::uint8_t>(before | (sleeps ? kSleeps | kKept : kMoves));
+  return {slot, !body.isActive(), is_kept, is_called(body)};
+}
+
+/// Brings what is known of a body up to date. Sleepers are skipped once nothing of it changes any more.
+void SoftIslands::note(const Note& of) {
+  if (!of.sleeps || !of.is_kept) dissolve(of.slot);
+  if (of.sleeps && !of.is_kept) forget(of.slot);
+  if (of.is_called) called_.push_back(of.slot);
+  const int before = (has(of.slot, kSleeps) ? kSlept : 0) | (states_[of.slot] & kForgotten);
+  states_[of.slot] = static_cast<std::uint8_t>(before | (of.sleeps ? kSleeps | kKept : kMoves));
 }
 
 /// First slot of the part. Halves the path to it (union-find).
@@ -210,15 +225,22 @@ void SoftIslands::unite_asleep(std::uint32_t a, std::uint32_t b) {
   if (!unite(a, b)) seams_of_sleepers_.add(a, b, {});
 }
 
+void SoftIslands::look_at(const btRigidBody& awake) {
+  const std::uint32_t slot = slot_of(awake);
+  const bool is_guest = entries_[slot].is_guest;  // the region that hosts it decides
+  urges_[slot] = static_cast<std::uint8_t>((is_guest || wants_to_sleep(awake) ? 0 : kUp) |
+                                           (is_guest || is_calm(awake) ? 0 : kStirs));
+}
+
 void SoftIslands::find_parts(std::span<const SoftTouch> touches, std::span<const SleepersTouch> of_sleepers,
-                             std::span<btTypedConstraint* const> joints) {
+                             std::span<const ListedJoint> joints) {
   wakes_any_ = false;
   seams_.clear();
   for (const SoftTouch& touch : touches) unite_awake(touch.slot_a, touch.slot_b);
   for (const SleepersTouch& touch : of_sleepers) unite_asleep(touch.slot_a, touch.slot_b);
-  for (const btTypedConstraint* joint : joints) {
-    if (!joint->isEnabled()) continue;
-    const std::uint32_t one = slot_of(joint->getRigidBodyA()), other = slot_of(joint->getRigidBodyB());
+  for (const ListedJoint& joint : joints) {
+    if (!joint.acts) continue;
+    const std::uint32_t one = joint.slot_a, other = joint.slot_b;
     if (!sleeps(one) || !sleeps(other)) {
       unite_awake(one, other);
     } else if (is_forgotten(one) || is_forgotten(other)) {
@@ -228,8 +250,7 @@ void SoftIslands::find_parts(std::span<const SoftTouch> touches, std::span<const
   mark_parts();
 }
 
-void SoftIslands::settle(std::span<const SoftTouch> touches, std::span<const std::uint32_t> parted,
-                         std::span<btTypedConstraint* const> joints) {
+void SoftIslands::settle(std::span<const SoftTouch> touches, std::span<const std::uint32_t> parted) {
   look_across(parted);
   std::swap(found_, forgotten_);
   forgotten_.clear();
@@ -252,27 +273,20 @@ void SoftIslands::settle(std::span<const SoftTouch> touches, std::span<const std
   for (const std::uint32_t slot : found_) {
     if (entries_[slot].list == List::kAsleep && is_asleep(*entries_[slot].body)) stop(*entries_[slot].body);
   }
-  joints_.clear();
-  for (btTypedConstraint* joint : joints) {
-    const bool moves = has(slot_of(joint->getRigidBodyA()), kMoves) || has(slot_of(joint->getRigidBodyB()), kMoves);
-    if (joint->isEnabled() && moves) joints_.push_back(joint);
-  }
-  std::ranges::sort(joints_, {}, &btTypedConstraint::getUserConstraintType);
 }
 
-void SoftIslands::mark(std::uint32_t slot, Part what) {
+void SoftIslands::mark(std::uint32_t slot, int what) {
   const std::uint32_t part = part_of(slot);
   if (parts_[part] == 0) marked_.push_back(part);
-  parts_[part] |= what;
+  parts_[part] = static_cast<std::uint8_t>(parts_[part] | what);
 }
 
 void SoftIslands::mark_parts() {
   for (const std::uint32_t part : marked_) parts_[part] = 0;
   marked_.clear();
   for (const btRigidBody* body : awake_) {
-    if (entries_[slot_of(*body)].is_guest) continue;
-    if (!wants_to_sleep(*body)) mark(slot_of(*body), kUp);
-    if (!is_calm(*body)) mark(slot_of(*body), kStirs);
+    const std::uint32_t slot = slot_of(*body);
+    if (urges_[slot] != 0) mark(slot, urges_[slot]);
   }
 }
 
@@ -342,8 +356,8 @@ void SoftIslands::wake() {
   }
 }
 
-void SoftIslands::rest(btScalar step_s) {
-  for (btRigidBody* body : awake_) rest(*body, step_s);
+void SoftIslands::rest(btScalar step_s, soft::Team& team) {
+  team.for_each(awake_.size(), [&](std::size_t i) { rest(*awake_[i], step_s); });
   call_neighbours();
 }
 

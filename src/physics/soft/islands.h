@@ -1,5 +1,5 @@
-// Sleep in the soft step (docs/design.md, "Sleep"): finds the bodies that are awake, and sorts their contacts and
-// joints in an order that follows from the bodies alone.
+// Sleep in the soft step (docs/design.md, "Sleep"): finds the bodies that are awake, and sorts their contacts in an
+// order that follows from the bodies alone.
 #pragma once
 
 #include <cstddef>
@@ -12,10 +12,9 @@
 
 #include "core/block.h"
 #include "physics/pair_lists.h"
+#include "physics/soft/listed_joints.h"
 #include "physics/soft/sorted_touches.h"
 #include "physics/soft/touch.h"
-
-class btTypedConstraint;
 
 namespace aurasim::physics {
 
@@ -46,7 +45,7 @@ class SoftIslands {
   void free_spare_memory();
 
   /// Finds the awake bodies at the start of a step.
-  void call();
+  void call(soft::Team& team);
   /// Did the body sleep at the last call(), and at the one in the step before? Always true for statics.
   bool sleeps(std::uint32_t slot) const { return has(slot, kSleeps); }
   bool slept(std::uint32_t slot) const { return has(slot, kSlept); }
@@ -58,12 +57,14 @@ class SoftIslands {
   /// After call(): nobody is awake, and nothing has to be found out about sleepers.
   bool are_at_rest() const { return awake_.empty() && forgotten_.empty(); }
 
+  /// Looks at how an awake body moves. Call for all of them after call(); several threads may, for different bodies.
+  void look_at(const btRigidBody& awake);
+
   /// Finds the parts, and which of them stir.
   void find_parts(std::span<const SoftTouch> touches, std::span<const SleepersTouch> of_sleepers,
-                  std::span<btTypedConstraint* const> joints);
+                  std::span<const ListedJoint> joints);
   /// Puts parts to sleep or wakes them. `parted`: slots of sleepers that have lost the touch of a body that is awake.
-  void settle(std::span<const SoftTouch> touches, std::span<const std::uint32_t> parted,
-              std::span<btTypedConstraint* const> joints);
+  void settle(std::span<const SoftTouch> touches, std::span<const std::uint32_t> parted);
 
   // Where regions are coupled, each region decides about the bodies that it hosts. Between find_parts() and settle():
   /// Calls visit(slot, slot) for each two bodies of two blocks that touch, unless both sleep and none is a guest. Some
@@ -106,7 +107,7 @@ class SoftIslands {
 
   /// Gives the bodies that have moved in the step their activation states, after their velocities are known. Sleepers
   /// that one of them has touched across a seam are called, unless it is calm: they wake in the next step.
-  void rest(btScalar step_s);
+  void rest(btScalar step_s, soft::Team& team);
   /// After rest(): slots of the sleepers that it has called. Their deactivation times have changed.
   std::span<const std::uint32_t> called() const { return called_; }
   const btRigidBody& body_at(std::uint32_t slot) const { return *entries_[slot].body; }
@@ -115,8 +116,6 @@ class SoftIslands {
   std::span<btRigidBody* const> awake() const { return awake_; }
   /// Touches of awake bodies, after sort().
   std::span<const SoftTouch> touches() const { return touches_.all(); }
-  /// Joints of awake bodies, ordered by their user types.
-  std::span<btTypedConstraint* const> joints() const { return joints_; }
 
  private:
   enum State : std::uint8_t {
@@ -148,6 +147,13 @@ class SoftIslands {
   };
 
   struct Nothing {};
+  /// What a body shows at the start of a step.
+  struct Note {
+    std::uint32_t slot;
+    bool sleeps;
+    bool is_kept;  ///< it was kKept, and its block is the same
+    bool is_called;
+  };
 
   void forget(std::uint32_t slot);
   void dissolve(std::uint32_t slot);
@@ -170,12 +176,13 @@ class SoftIslands {
     } while (of_part != slot);
   }
   bool has(std::uint32_t slot, State state) const { return (states_[slot] & state) != 0; }
-  void note(btRigidBody& body);
+  Note look_for_changes(const btRigidBody& body);
+  void note(const Note& of);
   void unlist(std::uint32_t slot);
   void put_into(List list, std::uint32_t slot);
   void put_in_order();
   std::uint32_t part_of(std::uint32_t slot);
-  void mark(std::uint32_t slot, Part what);
+  void mark(std::uint32_t slot, int what);
   bool is(std::uint32_t slot, int what) { return (parts_[part_of(slot)] & what) != 0; }
   bool unite(std::uint32_t a, std::uint32_t b);
   void unite_awake(std::uint32_t a, std::uint32_t b);
@@ -191,6 +198,7 @@ class SoftIslands {
   std::vector<std::uint32_t> parents_{0};
   std::vector<std::uint32_t> next_{0};  ///< the next body of the same part, around
   std::vector<std::uint8_t> parts_{0};  ///< flags Part, by the first slot of a part
+  std::vector<std::uint8_t> urges_{0};  ///< flags Part that a body gives its part, if it is awake
   std::vector<Entry> entries_{1};
   std::vector<std::uint32_t> free_;
   std::vector<Seam> seams_;                       ///< with a body that was awake at call()
@@ -201,13 +209,13 @@ class SoftIslands {
   std::vector<std::uint32_t> marked_;             ///< parts with flags
   std::vector<std::uint32_t> forgotten_, found_;  ///< sleepers whose touches are not known; those found in this step
   std::vector<std::uint32_t> order_;              ///< space for put_in_order()
+  std::vector<Note> notes_;                       ///< of the awake bodies
   bool is_in_order_ = true;
   bool wakes_any_ = false;
   bool has_woken_any_ = false;
   std::vector<btRigidBody*> awake_;
   std::vector<btRigidBody*> guests_;
   SortedTouches touches_;
-  std::vector<btTypedConstraint*> joints_;
 };
 
 }  // namespace aurasim::physics

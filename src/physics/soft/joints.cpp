@@ -12,6 +12,7 @@
 #include "core/progress.h"
 #include "physics/bullet_convert.h"
 #include "physics/joint_axes.h"
+#include "physics/prefetch.h"
 #include "physics/soft/convert.h"
 
 namespace aurasim::physics {
@@ -70,9 +71,14 @@ void set_own(soft::JointBlock& block, int lane, const JointAxes& axes, double su
 SoftJoints::SoftJoints(double substep_s) : substep_s_(substep_s), h_s_(static_cast<Real>(substep_s)) {}
 
 void SoftJoints::put(std::size_t i, btTypedConstraint& joint, std::int32_t first, std::int32_t second) {
-  const JointAxes& axes = axes_of(joint);
-  joints_[i] = {&joint, first, second, what_of(axes)};
+  JointAxes& axes = axes_of(joint);
+  joints_[i] = {&joint, &axes, first, second, what_of(axes)};
   if (axes.b_is_first) std::swap(joints_[i].a, joints_[i].b);
+}
+
+void SoftJoints::prefetch_parts(btTypedConstraint& joint) {
+  prefetch(joint.getUserConstraintPtr(), sizeof(JointAxes));
+  prefetch_flags(joint.getRigidBodyA()), prefetch_flags(joint.getRigidBodyB());
 }
 
 void SoftJoints::build(std::size_t movers, std::span<const SoftInertia> inertias, soft::Team& team) {
@@ -96,7 +102,16 @@ void SoftJoints::build(std::size_t movers, std::span<const SoftInertia> inertias
     for (std::size_t i = first_block; i < last_block; ++i) blocks_[i] = soft::JointBlock{};
     worker.wait();
     const auto [first, last] = worker.share(joints_.size());
-    for (std::size_t i = first; i < last; ++i) fill(i, inertias);
+    for (std::size_t i = first; i < last; ++i) {
+      if (i + kPrefetchDistance / 2 < last) {
+        const Joint& soon = joints_[i + kPrefetchDistance / 2];
+        prefetch(soon.axes, sizeof(JointAxes));
+        for (const btRigidBody* body : {&soon.joint->getRigidBodyA(), &soon.joint->getRigidBodyB()}) {
+          prefetch(&body->getWorldTransform(), sizeof(btTransform));
+        }
+      }
+      fill(i, inertias);
+    }
   });
 }
 
@@ -129,7 +144,7 @@ std::int32_t SoftJoints::first_of(std::int32_t mover) {
 
 void SoftJoints::fill(std::size_t at, std::span<const SoftInertia> inertias) {
   const Joint& joint = joints_[at];
-  const JointAxes& axes = axes_of(*joint.joint);
+  const JointAxes& axes = *joint.axes;
   soft::JointBlock& block = blocks_[layout_.block(at)];
   const int lane = layout_.lane(at);
   block.a[lane] = joint.a, block.b[lane] = joint.b;
@@ -191,7 +206,7 @@ void SoftJoints::finish(soft::Team& team) {
 void SoftJoints::finish(std::size_t i) {
   const soft::JointBlock& block = blocks_[layout_.block(i)];
   const int lane = layout_.lane(i);
-  JointAxes& axes = axes_of(*joints_[i].joint);
+  JointAxes& axes = *joints_[i].axes;
   const unsigned what = joints_[i].what;
   axes.drive_impulse = 0;
   if ((what & soft::kJointMotor) != 0) axes.drive_impulse = static_cast<double>(block.motor_took[lane]);

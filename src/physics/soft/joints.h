@@ -28,6 +28,8 @@ class SoftJoints {
   /// Sets the i-th joint, between two movers in the order of its bodies. The joints of an island have to come in an
   /// order that follows from the island alone. Several threads may set different joints.
   void put(std::size_t i, btTypedConstraint& joint, std::int32_t first, std::int32_t second);
+  /// Requests the memory that put() reads, for a joint that has been prefetched itself.
+  static void prefetch_parts(btTypedConstraint& joint);
   /// Lays out all joints. Bodies have to be at their poses of the start of the step.
   void build(std::size_t movers, std::span<const SoftInertia> inertias, soft::Team& team);
 
@@ -47,6 +49,7 @@ class SoftJoints {
  private:
   struct Joint {
     btTypedConstraint* joint;
+    JointAxes* axes;
     std::int32_t a, b;  ///< movers
     unsigned what;      ///< bits soft::kHeldAxis and so on
   };

@@ -269,16 +269,20 @@ void SoftPatches::tally(const soft::Worker& worker) {
 
 Real SoftPatches::tallied(std::size_t i, int point) const { return sums_[layout_.block(i)].of[point][layout_.lane(i)]; }
 
+void SoftPatches::prefetch_impulses(const SoftPatch& patch) {
+  if (patch.ahead || patch.is_foreign) return;
+  for (int k = 0; k < patch.count; ++k) {
+    physics::prefetch_impulses(patch.manifold->getContactPoint(patch.of[static_cast<std::size_t>(k)]));
+  }
+}
+
 /// Impulses of friction belong to the patch. Each point gets them, in fields that Bullet keeps for a point that it
 /// finds again, so they survive when a point is lost.
 void SoftPatches::remember(soft::Team& team) const {
   team.side_by_side([&](const soft::Worker& worker) {
     const auto [first, last] = worker.share(patches_.size());
     for (std::size_t i = first; i < last; ++i) {
-      if (i + kPrefetchDistance < last) {
-        const SoftPatch& soon = *patches_[i + kPrefetchDistance];
-        if (!soon.ahead && !soon.is_foreign) prefetch_points(*soon.manifold);
-      }
+      if (i + kPrefetchDistance < last) prefetch_impulses(*patches_[i + kPrefetchDistance]);
       remember(i);
     }
   });

@@ -74,6 +74,7 @@ class SoftPatches {
   };
 
   soft::Real load(const SoftPatch& patch, soft::Real inv_mass, soft::Real gravity) const;
+  static void prefetch_impulses(const SoftPatch& patch);
   void remember(std::size_t i) const;
   void fill(std::size_t at, const soft::Mover* movers, const SoftInertia* inertias, const soft::Real (&gravity)[3]);
 

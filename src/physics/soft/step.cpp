@@ -265,10 +265,15 @@ void SoftStep::Impl::take_in_shared(std::span<const SoftTouch> touches, SoftCont
 
 void SoftStep::Impl::take_in_joints(std::span<btTypedConstraint* const> joint_list) {
   joints.clear(joint_list.size());
-  team.for_each(joint_list.size(), [&](std::size_t i) {
-    btTypedConstraint& joint = *joint_list[i];
-    joints.put(i, joint, mover_of(joint.getRigidBodyA().getUserIndex()),
-               mover_of(joint.getRigidBodyB().getUserIndex()));
+  team.side_by_side([&](const soft::Worker& worker) {
+    const auto [first, last] = worker.share(joint_list.size());
+    for (std::size_t i = first; i < last; ++i) {
+      if (i + kPrefetchDistance < last) prefetch(joint_list[i + kPrefetchDistance], sizeof(btTypedConstraint));
+      if (i + kPrefetchDistance / 2 < last) SoftJoints::prefetch_parts(*joint_list[i + kPrefetchDistance / 2]);
+      btTypedConstraint& joint = *joint_list[i];
+      joints.put(i, joint, mover_of(joint.getRigidBodyA().getUserIndex()),
+                 mover_of(joint.getRigidBodyB().getUserIndex()));
+    }
   });
 }
 
@@ -380,7 +385,7 @@ void SoftStep::Impl::show(std::size_t i) const {
   held[i]->setLinearVelocity(after(body.v, m.v));
   held[i]->setAngularVelocity(after(body.w, m.w));
   const btQuaternion turned(m.dq[0], m.dq[1], m.dq[2], m.dq[3]);
-  held[i]->proceedToTransform(btTransform((turned * body.q).normalized(), body.p + soft::to_bullet(m.dp)));
+  move_to(*held[i], btTransform((turned * body.q).normalized(), body.p + soft::to_bullet(m.dp)));
 }
 
 void SoftStep::solve(std::span<btRigidBody* const> bodies, std::span<btRigidBody* const> moving_statics,

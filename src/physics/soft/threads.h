@@ -2,6 +2,7 @@
 // for each other.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstddef>
@@ -110,6 +111,47 @@ class Team {
   alignas(64) std::atomic<std::uint32_t> waits_{0};
   std::atomic<int> sleepers_{0};
   std::vector<std::thread> threads_;
+};
+
+/// Items in a list that threads share while they work, because some items take far longer than others. Each thread goes
+/// through its own share in order, piece by piece, and then helps with the shares of others: memory that is read in
+/// order comes sooner, and in the next step most of it is still near the same core.
+class Pieces {
+ public:
+  /// For teams of at most `threads`.
+  explicit Pieces(int threads) : shares_(std::make_unique<Share[]>(static_cast<std::size_t>(threads))) {}
+
+  /// Begins with `count` items, for `workers`, in pieces of `size` items at most.
+  void begin(std::size_t count, int workers, std::size_t size) {
+    size_ = size;
+    for (int i = 0; i < workers; ++i) {
+      Share& share = shares_[static_cast<std::size_t>(i)];
+      const auto [first, last] = Worker{i, workers, nullptr}.share(count);
+      share.next.store(first, std::memory_order_relaxed);
+      share.last = last;
+    }
+  }
+  /// Calls work(first, last) for pieces until all have been taken.
+  template <class Work>
+  void work_off(const Worker& worker, Work&& work) {
+    for (int i = 0; i < worker.of; ++i) {
+      Share& share = shares_[static_cast<std::size_t>((worker.number + i) % worker.of)];
+      while (true) {
+        const std::size_t first = share.next.fetch_add(size_, std::memory_order_relaxed);
+        if (first >= share.last) break;
+        work(first, std::min(share.last, first + size_));
+      }
+    }
+  }
+
+ private:
+  struct alignas(64) Share {
+    std::atomic<std::size_t> next{0};
+    std::size_t last = 0;
+  };
+
+  std::size_t size_ = 1;
+  std::unique_ptr<Share[]> shares_;  ///< by thread
 };
 
 inline void Worker::wait() const {

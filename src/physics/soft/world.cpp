@@ -20,6 +20,7 @@
 #include "physics/settings.h"
 #include "physics/soft/contacts.h"
 #include "physics/soft/islands.h"
+#include "physics/soft/listed_joints.h"
 #include "physics/soft/resting_pairs.h"
 #include "physics/soft/shared.h"
 #include "physics/soft/step.h"
@@ -48,22 +49,23 @@ class SoftWorld final : public World {
   }
 
   int stepSimulation(btScalar step_s, int, btScalar) override {
-    islands_.call();
+    team_.employ_for(islands_.awake().size());  // as many as at the end of the last step
+    islands_.call(team_);
     if (used_room_.is_spare(islands_.awake().size())) free_spare_memory();
     bring_back([this](std::uint32_t slot) { return !islands_.sleeps(slot); });
     resting_.put_away(islands_);
-    team_.employ_for(islands_.awake().size());
     moved_.assign(islands_.awake().begin(), islands_.awake().end());
-    damp(step_s);
-    bound();
+    prepare(step_s);
     if (!islands_.are_at_rest()) m_broadphasePairCache->calculateOverlappingPairs(m_dispatcher1);
     core::Progress::mark();
     contacts_->look(*getPairCache(), static_cast<btCollisionDispatcher&>(*m_dispatcher1), getDispatchInfo(),
                     getGravity());
     first_contacts_.report(contacts_->came(), *getPairCache());
-    islands_.find_parts(contacts_->touches(), contacts_->touches_of_sleepers(), span_of(m_constraints));
+    joints_.look(span_of(m_constraints), team_);
+    islands_.find_parts(contacts_->touches(), contacts_->touches_of_sleepers(), joints_.all());
     if (shared_) shared_->tell_stirs(islands_);
-    islands_.settle(contacts_->touches(), contacts_->parted(), span_of(m_constraints));
+    islands_.settle(contacts_->touches(), contacts_->parted());
+    joints_.sort([this](std::uint32_t slot) { return islands_.moves(slot); });
     if (islands_.has_woken_any()) {
       bring_back([this](std::uint32_t slot) { return islands_.is_woken(slot); });
       contacts_->add_woken(*getPairCache());
@@ -77,10 +79,10 @@ class SoftWorld final : public World {
     }
     islands_.sort(contacts_->touches(), team_);
     core::Progress::mark();
-    step_->solve(islands_.awake(), moving_statics_, islands_.touches(), *contacts_, islands_.joints(), getGravity(),
+    step_->solve(islands_.awake(), moving_statics_, islands_.touches(), *contacts_, joints_.sorted(), getGravity(),
                  contact_impulses_, shared_ ? &*shared_ : nullptr);
     report_met();
-    islands_.rest(step_s);
+    islands_.rest(step_s, team_);
     if (shared_) shared_->call_sleepers(islands_);
     called_.clear();
     for (const std::uint32_t slot : islands_.called()) called_.push_back(&islands_.body_at(slot));
@@ -98,7 +100,7 @@ class SoftWorld final : public World {
   void add_contacts_of_moved(std::vector<std::pair<int, int>>& contacts) const override {
     if (moved_.empty()) return;
     for (const SoftTouch& touch : contacts_->touches()) {
-      if (touch.manifold == nullptr || touch.manifold->getNumContacts() == 0) continue;
+      if (touch.ahead) continue;
       contacts.emplace_back(std::min(touch.a, touch.b), std::max(touch.a, touch.b));
     }
   }
@@ -131,7 +133,8 @@ class SoftWorld final : public World {
   void free_spare_memory() {
     make_lists();
     islands_.free_spare_memory();
-    core::free_memory(moved_, lists_);
+    core::free_memory(moved_);
+    joints_ = {};
   }
 
   /// Brings back the pairs of awake bodies that are `wanted(slot)`.
@@ -156,36 +159,24 @@ class SoftWorld final : public World {
     }
   }
 
-  void damp(btScalar step_s) {
-    const std::span<btRigidBody* const> awake = islands_.awake();
-    team_.for_each(awake.size(), [&](std::size_t i) {
-      btRigidBody& body = *awake[i];
-      if (body.getLinearDamping() > 0 || body.getAngularDamping() > 0) body.applyDamping(step_s);
-    });
-  }
-
-  /// Updates the bounds of objects that may have moved since the last call. Most of them stay in their boxes.
-  void bound() {
-    lists_.resize(static_cast<std::size_t>(team_.size()));
-    for (List& list : lists_) list.outside.clear();  // also of threads that have nothing to do in this step
+  /// Damps the awake bodies, and updates their bounds. Most of them stay in their boxes.
+  void prepare(btScalar step_s) {
     const std::span<btRigidBody* const> awake = islands_.awake();
     contacts_->bounds().begin(islands_.slots());
     team_.side_by_side([&](const soft::Worker& worker) {
-      std::vector<Bounded>& outside = lists_[static_cast<std::size_t>(worker.number)].outside;
       const auto [first, last] = worker.share(awake.size());
       for (std::size_t i = first; i < last; ++i) {
-        const Bounds bounds = bounds_ahead(*awake[i]);
-        contacts_->bounds().note(slot_of(*awake[i]), bounds);
-        btBroadphaseProxy* const proxy = awake[i]->getBroadphaseHandle();
-        if (!Broadphase::keep_in_box(*proxy, bounds.low, bounds.high)) outside.push_back({proxy, bounds});
+        btRigidBody& body = *awake[i];
+        if (body.getLinearDamping() > 0 || body.getAngularDamping() > 0) body.applyDamping(step_s);
+        islands_.look_at(body);
+        const Bounds bounds = bounds_ahead(body);
+        contacts_->bounds().note(slot_of(body), bounds);
+        broadphase().bound(*body.getBroadphaseHandle(), bounds, worker);
       }
     });
-    for (const List& list : lists_) {
-      for (const Bounded& object : list.outside) {
-        m_broadphasePairCache->setAabb(object.proxy, object.bounds.low, object.bounds.high, m_dispatcher1);
-      }
-    }
+    broadphase().give_boxes();
   }
+  Broadphase& broadphase() { return static_cast<Broadphase&>(*m_broadphasePairCache); }
 
   /// Bounds of a body, with its way in the step.
   Bounds bounds_ahead(const btRigidBody& body) const {
@@ -201,18 +192,10 @@ class SoftWorld final : public World {
     return {low - margin, high + margin};
   }
 
-  struct Bounded {
-    btBroadphaseProxy* proxy;
-    Bounds bounds;
-  };
-  /// Results of one thread.
-  struct alignas(64) List {
-    std::vector<Bounded> outside;  ///< objects that have left their boxes
-  };
-
   FirstContacts& first_contacts_;
   ContactImpulses& contact_impulses_;
   SoftIslands islands_;
+  ListedJoints joints_;
   const Settings settings_;
   core::UsedRoom used_room_;
   std::optional<SoftContacts> contacts_;  ///< never empty
@@ -222,7 +205,6 @@ class SoftWorld final : public World {
   std::optional<SoftStep> step_;  ///< never empty
   soft::Team& team_;
   RestingPairs resting_;
-  std::vector<List> lists_;
   std::optional<SoftShared> shared_;  ///< if this world is coupled with those of other regions
 };
 
