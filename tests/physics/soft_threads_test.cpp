@@ -97,7 +97,7 @@ TEST(SoftThreads, HelpEachOtherWithPieces) {
       });
     });
     for (const std::atomic<int>& times : taken) EXPECT_EQ(times, 1);
-    if (items == kItems) EXPECT_LT(by_slow_one, kItems / 3);
+    EXPECT_LE(by_slow_one, 1 + items / 3);
   }
 }
 

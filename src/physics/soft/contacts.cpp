@@ -35,7 +35,7 @@ constexpr btScalar kLongWay_m = btScalar(0.005);
 constexpr btScalar kOverlap_m = btScalar(0.002);
 
 /// A thread takes so many pairs at once.
-constexpr std::size_t kPairsAtOnce = 128;
+constexpr std::size_t kPairsAtOnce = 512;
 /// Bounds are prefetched so many pairs ahead.
 constexpr int kBoundsDistance = 24;
 
@@ -169,53 +169,59 @@ void SoftContacts::gather(const soft::Worker& worker) {
   }
 }
 
-/// Looks at pairs [first, last). Other threads work on the other pairs, so prefetching stops at `last`.
+/// Looks at pairs [first, last). First finds those about which something has to be done, which needs no memory but the
+/// list of pairs and the bounds. So what is requested ahead is what comes next.
 void SoftContacts::look(List& list, btOverlappingPairCache& pairs, int first, int last,
                         btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
   btBroadphasePairArray& all = pairs.getOverlappingPairArray();
-  const auto both_sleep = [this](const PairNote& of) { return islands_.sleeps(of.a) && islands_.sleeps(of.b()); };
-  const auto is_forgotten = [this](const PairNote& of) {
-    return islands_.is_forgotten(of.a) || islands_.is_forgotten(of.b());
-  };
-  const auto is_apart = [&](const btBroadphasePair& pair, const PairNote& note) {
-    return pair.m_algorithm == nullptr && bounds_.are_apart(note.a, note.b());
-  };
-  const auto is_wanted = [&](int i) {
-    if (i >= last) return false;
-    const PairNote note = noted(all[i]);
-    if (note.is_known() && is_apart(all[i], note)) return false;
-    return !note.is_known() || (note.may_touch() && (!both_sleep(note) || is_forgotten(note)));
-  };
+  list.wanted.clear();
   for (int i = first; i < last; ++i) {
-    core::Progress::mark_now_and_then(static_cast<std::size_t>(i));
     if (i + kBoundsDistance < last) {
       const PairNote later = noted(all[i + kBoundsDistance]);
       bounds_.prefetch(later.a), bounds_.prefetch(later.b());
     }
-    if (is_wanted(i + kPrefetchDistance)) prefetch_pair(all[i + kPrefetchDistance]);
-    if (is_wanted(i + kPrefetchDistance / 2) && boxes_overlap(all[i + kPrefetchDistance / 2])) {
-      prefetch_parts(all[i + kPrefetchDistance / 2], list.manifolds);
+    const PairNote note = note_of(all[i]);
+    if (!note.may_touch() || (both_sleep(note) && !is_forgotten(note))) continue;
+    if (all[i].m_algorithm == nullptr && bounds_.are_apart(note.a, note.b())) continue;
+    list.wanted.push_back(&all[i]);
+  }
+  const std::vector<btBroadphasePair*>& wanted = list.wanted;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    core::Progress::mark_now_and_then(i);
+    if (i + kPrefetchDistance < wanted.size()) prefetch_pair(*wanted[i + kPrefetchDistance]);
+    if (i + kPrefetchDistance / 2 < wanted.size() && boxes_overlap(*wanted[i + kPrefetchDistance / 2])) {
+      prefetch_parts(*wanted[i + kPrefetchDistance / 2], list.manifolds);
     }
-    if (is_wanted(i + kPrefetchDistance / 4) && boxes_overlap(all[i + kPrefetchDistance / 4])) {
-      const btManifoldArray& manifolds = manifolds_of(all[i + kPrefetchDistance / 4], list.manifolds);
+    if (i + kPrefetchDistance / 4 < wanted.size() && boxes_overlap(*wanted[i + kPrefetchDistance / 4])) {
+      const btManifoldArray& manifolds = manifolds_of(*wanted[i + kPrefetchDistance / 4], list.manifolds);
       for (int k = 0; k < manifolds.size(); ++k) prefetch_points(*manifolds[k]);
     }
-    const PairNote note = note_of(all[i]);
-    if (!note.may_touch() || is_apart(all[i], note)) continue;
-    if (both_sleep(note)) {  // touches of sleepers are unchanged
-      if (is_forgotten(note) && touch(all[i], list.manifolds)) list.touches_of_sleepers.push_back({note.a, note.b()});
-      continue;
-    }
-    if (islands_.slept(note.a) && islands_.slept(note.b())) know_touches(list, all[i]);
-    const std::uint32_t sleeper = islands_.sleeps(note.a) ? note.a : islands_.sleeps(note.b()) ? note.b() : 0;
-    const bool touched = sleeper != 0 && touch(all[i], list.manifolds);
-    if (bounds_overlap(all[i])) {
-      look(list, all[i], dispatcher, info);
-    } else {
-      pairs.cleanOverlappingPair(all[i], &dispatcher);
-    }
-    if (touched && !touch(all[i], list.manifolds)) list.parted.push_back(sleeper);
+    look(list, pairs, *wanted[i], dispatcher, info);
   }
+}
+
+bool SoftContacts::both_sleep(const PairNote& of) const { return islands_.sleeps(of.a) && islands_.sleeps(of.b()); }
+bool SoftContacts::is_forgotten(const PairNote& of) const {
+  return islands_.is_forgotten(of.a) || islands_.is_forgotten(of.b());
+}
+
+/// Looks at a pair about which something has to be done.
+void SoftContacts::look(List& list, btOverlappingPairCache& pairs, btBroadphasePair& pair,
+                        btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
+  const PairNote note = noted(pair);
+  if (both_sleep(note)) {  // touches of sleepers are unchanged
+    if (touch(pair, list.manifolds)) list.touches_of_sleepers.push_back({note.a, note.b()});
+    return;
+  }
+  if (islands_.slept(note.a) && islands_.slept(note.b())) know_touches(list, pair);
+  const std::uint32_t sleeper = islands_.sleeps(note.a) ? note.a : islands_.sleeps(note.b()) ? note.b() : 0;
+  const bool touched = sleeper != 0 && touch(pair, list.manifolds);
+  if (bounds_overlap(pair)) {
+    look(list, pair, dispatcher, info);
+  } else {
+    pairs.cleanOverlappingPair(pair, &dispatcher);
+  }
+  if (touched && !touch(pair, list.manifolds)) list.parted.push_back(sleeper);
 }
 
 void SoftContacts::add_woken(btOverlappingPairCache& pairs) {

@@ -21,6 +21,7 @@ namespace aurasim::physics {
 
 class FirstContacts;
 class SoftIslands;
+struct PairNote;
 
 /// Two bodies with contacts ahead of time.
 struct SoftAhead {
@@ -83,6 +84,7 @@ class SoftContacts {
   /// Results of one thread.
   struct alignas(64) List {
     btManifoldArray manifolds;
+    std::vector<btBroadphasePair*> wanted;  ///< pairs about which something has to be done
     std::vector<SoftTouch> touches;
     std::vector<SleepersTouch> touches_of_sleepers;
     std::vector<btPersistentManifold*> came;  ///< new ones of two bodies that move
@@ -92,6 +94,10 @@ class SoftContacts {
   };
 
   void look(List& list, btOverlappingPairCache& pairs, int first, int last, btCollisionDispatcher& dispatcher,
+            const btDispatcherInfo& info);
+  bool both_sleep(const PairNote& of) const;
+  bool is_forgotten(const PairNote& of) const;
+  void look(List& list, btOverlappingPairCache& pairs, btBroadphasePair& pair, btCollisionDispatcher& dispatcher,
             const btDispatcherInfo& info);
   void look(List& list, btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info);
   template <class Wanted>
