@@ -11,6 +11,7 @@ set(soft_step_sources
   soft/kernel_sse2.cpp
   soft/kernels.cpp
   soft/layout.cpp
+  soft/movers.cpp
   soft/patches.cpp
   soft/resting_pairs.cpp
   soft/seam_parcels.cpp

@@ -5,35 +5,23 @@
 #pragma once
 
 #include <memory>
-#include <span>
 
-class btRigidBody;
-class btTypedConstraint;
-class btVector3;
+#include "physics/soft/movers.h"
 
 namespace aurasim::physics {
 
 class ContactImpulses;
-namespace soft {
-class Team;
-}
 class SoftContacts;
-class SoftShared;
-struct Settings;
-struct SoftTouch;
 
 class SoftStep {
  public:
   SoftStep(const Settings& settings, soft::Team& team);
   ~SoftStep();
 
-  /// Moves and turns `bodies`: all that are awake. `moving_statics` push them, and their own poses are not changed. The
-  /// touches and joints of each island have to come in an order that follows from the island alone; `contacts` has the
-  /// patches of all touches. Gravity in m/s^2. Adds the contact impulses to `impulses`, if wanted. `shared` has the
-  /// contacts with bodies of other regions; null if there are none.
-  void solve(std::span<btRigidBody* const> bodies, std::span<btRigidBody* const> moving_statics,
-             std::span<const SoftTouch> touches, SoftContacts& contacts, std::span<btTypedConstraint* const> joints,
-             const btVector3& gravity, ContactImpulses& impulses, SoftShared* shared);
+  /// Moves and turns all bodies that are awake. The touches and joints of each island have to come in an order that
+  /// follows from the island alone; `contacts` has the patches of all touches. Adds the contact impulses to `impulses`,
+  /// if wanted.
+  void solve(const SoftBodies& bodies, SoftContacts& contacts, ContactImpulses& impulses);
 
  private:
   struct Impl;

@@ -79,8 +79,9 @@ class SoftWorld final : public World {
     }
     islands_.sort(contacts_->touches(), team_);
     core::Progress::mark();
-    step_->solve(islands_.awake(), moving_statics_, islands_.touches(), *contacts_, joints_.sorted(), getGravity(),
-                 contact_impulses_, shared_ ? &*shared_ : nullptr);
+    step_->solve({islands_.awake(), moving_statics_, islands_.touches(), joints_.sorted(), getGravity(),
+                  shared_ ? &*shared_ : nullptr},
+                 *contacts_, contact_impulses_);
     report_met();
     islands_.rest(step_s, team_);
     if (shared_) shared_->call_sleepers(islands_);
