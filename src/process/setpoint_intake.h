@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "core/control_log.h"
 #include "core/setpoint.h"
 #include "messages/control_messages.h"
 #include "process/hold.h"

@@ -63,13 +63,17 @@ class Watcher {
   void look() {
     const double begin_s = now_s();
     std::uint64_t marks = core::Progress::marks();
-    for (double since_s = begin_s; !ended_;) {
+    for (double since_s = now_s(); !ended_;) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      // The clock is read before and after the marks, so that a watcher that waits for a core never reports too much.
       const double time_s = now_s();
-      const bool stands = marks == core::Progress::marks();
-      if (stands) longest_s_ = std::max(longest_s_.load(), time_s - since_s);
-      if (!stands) since_s = time_s;
-      marks = core::Progress::marks();
+      const std::uint64_t seen = core::Progress::marks();
+      if (seen == marks) {
+        longest_s_ = std::max(longest_s_.load(), time_s - since_s);
+      } else {
+        marks = seen;
+        since_s = now_s();
+      }
       all_s_ = time_s - begin_s;
     }
   }
