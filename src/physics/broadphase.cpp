@@ -24,8 +24,8 @@ constexpr std::size_t kLooksForStatics = 100;
 /// For each static that comes, so many are given a better place.
 constexpr std::size_t kPlacedForOne = 4;
 
-/// What moves is in several trees, so that several threads can change them: one for each square column of this side.
-/// Columns that are kColumns apart along x or y share a tree.
+/// Side of a column, m. Objects that move are in one tree for each square column, so that several threads can change
+/// the trees. Columns that are kColumns apart along x or y share a tree.
 constexpr btScalar kColumn_m = 16;
 constexpr int kColumns = 8;
 
@@ -194,14 +194,13 @@ void Broadphase::getAabb(btBroadphaseProxy* proxy, btVector3& low, btVector3& hi
   low = proxy->m_aabbMin, high = proxy->m_aabbMax;
 }
 
-/// All trees that are not empty.
-std::vector<const btDbvt*> Broadphase::trees() const {
-  std::vector<const btDbvt*> trees;
+/// Calls visit(tree) for all trees that are not empty.
+template <class Visit>
+void Broadphase::for_each_tree(Visit&& visit) const {
   for (const btDbvt& tree : moving_) {
-    if (!tree.empty()) trees.push_back(&tree);
+    if (!tree.empty()) visit(tree);
   }
-  if (!standing_.empty()) trees.push_back(&standing_);
-  return trees;
+  if (!standing_.empty()) visit(standing_);
 }
 
 void Broadphase::rayTest(const btVector3& from, const btVector3& to, btBroadphaseRayCallback& callback,
@@ -209,10 +208,10 @@ void Broadphase::rayTest(const btVector3& from, const btVector3& to, btBroadphas
   if (statics_ != nullptr) bring_statics_on_way(from, to, {low, high});
   ForRays each;
   btAlignedObjectArray<const btDbvtNode*> stack;
-  for (const btDbvt* tree : trees()) {
-    tree->rayTestInternal(tree->m_root, from, to, callback.m_rayDirectionInverse, callback.m_signs,
-                          callback.m_lambda_max, low, high, stack, each);
-  }
+  for_each_tree([&](const btDbvt& tree) {
+    tree.rayTestInternal(tree.m_root, from, to, callback.m_rayDirectionInverse, callback.m_signs, callback.m_lambda_max,
+                         low, high, stack, each);
+  });
   // The first of two hits at one place counts, so their order must not depend on the trees.
   std::ranges::sort(each.met, {}, [](const btBroadphaseProxy* proxy) { return proxy->m_uniqueId; });
   for (btBroadphaseProxy* proxy : each.met) callback.process(proxy);
@@ -252,14 +251,13 @@ bool Broadphase::has_body_near(const Bounds& where) const {
 
 void Broadphase::aabbTest(const btVector3& low, const btVector3& high, btBroadphaseAabbCallback& callback) {
   ForBoxes each(callback);
-  for (const btDbvt* tree : trees()) tree->collideTV(tree->m_root, volume_of(low, high), each);
+  for_each_tree([&](const btDbvt& tree) { tree.collideTV(tree.m_root, volume_of(low, high), each); });
 }
 
 void Broadphase::getBroadphaseAabb(btVector3& low, btVector3& high) const {
   low = high = btVector3(0, 0, 0);
-  for (const btDbvt* tree : trees()) {
-    low.setMin(tree->m_root->volume.Mins()), high.setMax(tree->m_root->volume.Maxs());
-  }
+  for_each_tree(
+      [&](const btDbvt& tree) { low.setMin(tree.m_root->volume.Mins()), high.setMax(tree.m_root->volume.Maxs()); });
 }
 
 void Broadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {

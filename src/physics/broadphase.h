@@ -85,7 +85,8 @@ class Broadphase final : public btBroadphaseInterface {
   static Proxy& of(btBroadphaseProxy& proxy);
   static const Proxy& of(const btBroadphaseProxy& proxy);
   btDbvt& tree_of(const Proxy& proxy);
-  std::vector<const btDbvt*> trees() const;
+  template <class Visit>
+  void for_each_tree(Visit&& visit) const;
   static bool keep_in_box(Proxy& proxy, const Bounds& bounds);
   static NewBox leave_box(Proxy& proxy, const Bounds& bounds);
   void take_out(NewBox& box);

@@ -275,8 +275,8 @@ void Simulation::step() {
     joints_.finish_look(world_);
   }
   note_moved();
-  findings_.look(table_, notes_.for_step, settings_.block_m, world_.team());
   if (used_room_.is_spare(moved_count_)) free_spare_memory();
+  findings_.look(table_, notes_.for_step, settings_.block_m, world_.team());
   world_.team().rest();
   stop_pushing();
   ++step_;

@@ -147,7 +147,7 @@ class SoftIslands {
   };
 
   struct Nothing {};
-  /// What a body shows at the start of a step.
+  /// State of a body at the start of a step, as call() finds it.
   struct Note {
     std::uint32_t slot;
     bool sleeps;

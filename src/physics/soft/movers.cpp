@@ -104,7 +104,7 @@ void SoftMovers::take_in_statics(std::span<btRigidBody* const> moving_statics) {
   }
 }
 
-/// Of movers [first, last).
+/// Lists the forces on movers [first, last).
 void SoftMovers::take_in_pushes(std::size_t first, std::size_t last, std::vector<PushedMover>& of_thread) const {
   of_thread.clear();
   for (std::size_t i = std::max<std::size_t>(1, first); i < last && held_[i] != nullptr; ++i) {

@@ -2,6 +2,7 @@
 // once.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -24,7 +25,7 @@ namespace aurasim::physics {
 class SoftShared;
 struct Settings;
 
-/// What a step moves, besides its contacts and joints.
+/// The bodies of a step, and the touches and joints that hold them.
 struct SoftBodies {
   std::span<btRigidBody* const> awake;
   std::span<btRigidBody* const> moving_statics;  ///< they push bodies, and their own poses are not changed
