@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <deque>
+#include <condition_variable>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -13,151 +14,138 @@
 #include "core/progress.h"
 #include "dds/typed_endpoints.h"
 #include "messages/seam_codec.h"
+#include "messages/seam_pieces.h"
 
 namespace aurasim::dds {
 namespace {
 
 using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
 
 /// After so long a wait for one parcel, the log names the region.
 constexpr auto kLong = 2s;
-/// After so long a wait it is asked whether the node of any region is lost.
-constexpr auto kAsksForAll = 5ms;
+/// From one look at who is lost, and which processes are nodes, to the next.
+constexpr auto kLooks = 5ms;
 /// From one question whether others stand to the next.
 constexpr auto kAsksWhetherOthersStand = 100ms;
+/// A region that has sent nothing for so long is asked for what has not come, once more after as long, and then after
+/// twice as long each time: it may still compute.
+constexpr Clock::duration kSilent = 2ms, kLongestSilent = 8ms;
+/// Shortest time between two answers to one region. Most bytes of an answer.
+constexpr auto kBetweenAnswers = 1ms;
+constexpr std::size_t kMostOfAnAnswer_B = std::size_t{256} << 10;
 
-double seconds_since(std::chrono::steady_clock::time_point begun) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-}
+double seconds_since(Clock::time_point begun) { return std::chrono::duration<double>(Clock::now() - begun).count(); }
 
 struct Peer {
   bool is_near = false;
-  std::optional<Writer> writer;              ///< of a peer that is not near: once a parcel goes to it
-  std::deque<messages::SeamParcel> waiting;  ///< parcels that came while those of another region were fetched
-  std::uint32_t posted = 0, fetched = 0;     ///< in this step
-  double waited_s = 0;                       ///< in this step
-  messages::SeamParcel last;
+  std::optional<Writer> writer;  ///< of a peer that is not near: once a parcel goes to it
+  double waited_s = 0;           ///< in this step
+  std::vector<std::byte> last;   ///< parcel
+
+  // Guarded by Impl::mutex.
+  Writer* answers = nullptr;          ///< `writer`, once it is there
+  std::optional<ProcessPrefix> node;  ///< the region's, if known
+  messages::PostedPieces posted;
+  messages::ArrivedPieces arrived;
+  std::uint64_t arrivals = 0;  ///< pieces and their repetitions
+  Clock::time_point answered;
 };
 
 }  // namespace
 
 struct DdsSeams::Impl {
-  Impl(Participant& participant_in, const SeamSettings& settings_in)
-      : participant(participant_in),
-        settings(settings_in),
-        wakeup(participant.domain().wakeup()),
-        reader(participant.domain(),
-               on(TopicId::kSeam, {.destination = settings.region, .life = settings.life}, settings.region), wakeup) {
-    for (std::uint32_t i = 0; i < settings.region_count; ++i) {
-      if (core::RegionId{i} == settings.region) continue;
-      peers.try_emplace(core::RegionId{i});
-    }
-    for (const core::RegionId region : settings.near) {
-      peers.at(region).is_near = true;
-      make_writer(region);
-    }
-    expected.map_version = settings.map_version;
-    expected.destination = settings.region;
-    expected.region_count = settings.region_count;
-  }
+  Impl(Participant& participant_in, const SeamSettings& settings_in);
 
   void make_writer(core::RegionId to);
-  void wait_for_reader(core::RegionId to);
-  void expect_alive(core::RegionId region, std::chrono::steady_clock::time_point begun);
-  bool take(core::RegionId from, Peer& peer);
+  void look_at_nodes();
+  void expect_alive(core::RegionId region, Clock::time_point begun);
   std::optional<core::RegionId> find_lost() const;
-  bool receive();
-  void note_posted(std::chrono::steady_clock::time_point begun);
-  void note_fetched(Peer& peer, std::chrono::steady_clock::time_point begun);
+  void expect_same_step(core::RegionId from, const Peer& peer) const;
+  void wait_for(core::RegionId from, Peer& peer, std::unique_lock<std::mutex>& lock);
+  void ask(core::RegionId from, Peer& peer, std::span<const std::uint32_t> lacking);
+  void hear();
+  void hear(const messages::SeamPiece& piece);
+  void answer(Peer& peer, const messages::SeamPiece& question);
+  void note_posted(Clock::time_point begun);
+  void note_fetched(Peer& peer, Clock::time_point begun);
   void end_exchange();
+  messages::SeamHeader header_to(core::RegionId to, std::uint32_t number) const {
+    return {settings.region, to, generation, step, number};
+  }
 
   Participant& participant;
   SeamSettings settings;
-  Wakeup& wakeup;
-  Reader reader;  ///< of the parcels of all peers
   std::map<core::RegionId, Peer> peers;
+  ExchangeTimes times;
+  double exchange_s = 0;         ///< of the exchange that goes on
+  bool has_fetched = false;      ///< in the exchange that goes on
+  Clock::time_point last_asked;  ///< whether others stand
+  wire::SeamPiece sample;        // reused
+
+  // Of the DDS thread that takes what comes.
+  std::mutex hearing;
   messages::Expected expected;
+  wire::SeamPiece heard;  // reused
+
+  mutable std::mutex mutex;
+  std::condition_variable has_come;
+  std::optional<core::RegionId> waits_for;
   core::Generation generation = 0;
   core::Step step = 0;
-  ExchangeTimes times;
-  double exchange_s = 0;                             ///< of the exchange that goes on
-  bool has_fetched = false;                          ///< in the exchange that goes on
-  std::chrono::steady_clock::time_point last_asked;  ///< whether others stand
-  wire::SeamParcel sample;                           // reused
+  wire::SeamPiece answer_sample;  // reused
+  SeamCounters counters;
+
+  std::optional<Reader> reader;  ///< of the parcels of all peers; ends first, and with it what DDS threads do here
 };
 
-void DdsSeams::Impl::make_writer(core::RegionId to) {
-  const topics::Route route{.source = settings.region, .destination = to, .life = settings.life};
-  peers.at(to).writer.emplace(participant.domain(), on(TopicId::kSeam, route, settings.region), wakeup);
+DdsSeams::Impl::Impl(Participant& participant_in, const SeamSettings& settings_in)
+    : participant(participant_in), settings(settings_in) {
+  for (std::uint32_t i = 0; i < settings.region_count; ++i) {
+    if (core::RegionId{i} != settings.region) peers.try_emplace(core::RegionId{i});
+  }
+  expected.map_version = settings.map_version;
+  expected.destination = settings.region;
+  expected.region_count = settings.region_count;
+  for (const core::RegionId region : settings.near) {
+    peers.at(region).is_near = true;
+    make_writer(region);
+  }
+  const std::lock_guard until_ready(hearing);
+  reader.emplace(participant.domain(),
+                 on(TopicId::kSeam, {.destination = settings.region, .life = settings.life}, settings.region),
+                 participant.domain().wakeup(), [this] { hear(); });
 }
 
-/// A parcel that is written before is lost: the writer keeps none for readers that it does not know yet. The other
-/// end may not know the writer yet. It then asks for the parcel once it does.
-void DdsSeams::Impl::wait_for_reader(core::RegionId to) {
-  const auto begun = std::chrono::steady_clock::now();
-  const Writer& writer = *peers.at(to).writer;
-  while (!writer.reaches(to)) {
-    expect_alive(to, begun);
-    core::Progress::mark();
-    participant.progress();
-    wakeup.wait(1ms);
+/// Must not be called with a lock that hear() takes: no datagram is processed while an endpoint is made.
+void DdsSeams::Impl::make_writer(core::RegionId to) {
+  const topics::Route route{.source = settings.region, .destination = to, .life = settings.life};
+  Peer& peer = peers.at(to);
+  peer.writer.emplace(participant.domain(), on(TopicId::kSeam, route, settings.region), participant.domain().wakeup());
+  const std::lock_guard lock(mutex);
+  peer.answers = &*peer.writer;
+}
+
+void DdsSeams::Impl::look_at_nodes() {
+  if (!settings.node_of) return;
+  for (auto& [region, peer] : peers) {
+    const auto node = settings.node_of(region);
+    const std::lock_guard lock(mutex);
+    peer.node = node;
   }
 }
 
 /// Throws core::SeamsBroken when a region that is waited for is lost, or after a while any other, or when others stand.
-void DdsSeams::Impl::expect_alive(core::RegionId region, std::chrono::steady_clock::time_point begun) {
-  const auto now = std::chrono::steady_clock::now();
+void DdsSeams::Impl::expect_alive(core::RegionId region, Clock::time_point begun) {
+  const auto now = Clock::now();
   std::optional<core::RegionId> lost;
   if (settings.is_lost(region)) lost = region;
-  if (!lost && now - begun > kAsksForAll) lost = find_lost();
+  if (!lost && now - begun > kLooks) lost = find_lost();
   if (lost) throw core::SeamsBroken(fmt::format("region {} was lost in the middle of a step", core::value_of(*lost)));
   if (!settings.why_stand || now - std::max(begun, last_asked) < kAsksWhetherOthersStand) return;
   last_asked = now;
   // A node that only the others receive nothing from is lost to them, and they are not lost to it.
   if (const auto why = settings.why_stand()) throw core::SeamsBroken(*why);
-}
-
-/// Takes the next parcel of this step. Parcels of earlier steps are dropped.
-bool DdsSeams::Impl::take(core::RegionId from, Peer& peer) {
-  for (;;) {
-    while (peer.waiting.empty()) {
-      if (!receive()) return false;
-    }
-    messages::SeamParcel parcel = std::move(peer.waiting.front());
-    peer.waiting.pop_front();
-    if (parcel.header.generation < generation || parcel.header.step < step) continue;
-    const bool is_next = parcel.header.generation == generation && parcel.header.step == step &&
-                         parcel.header.number == peer.fetched + 1;
-    if (!is_next) {
-      throw core::SeamsBroken(
-          fmt::format("region {} is in another step: parcel {} of state {} came instead of {} of {}",
-                      core::value_of(from), parcel.header.number, parcel.header.step, peer.fetched + 1, step));
-    }
-    ++peer.fetched;
-    peer.last = std::move(parcel);
-    return true;
-  }
-}
-
-/// Takes one sample, and puts its parcel to those of its region. False when there is none.
-bool DdsSeams::Impl::receive() {
-  Origin origin;
-  if (!reader.take(&sample, &origin)) return false;
-  const core::RegionId from =
-      participant.domain().speakers().home_of(origin.writer).value_or(core::RegionId{sample.source()});
-  const auto peer = peers.find(from);
-  if (peer == peers.end() || !settings.is_node(from, origin.writer.guidPrefix)) {
-    reader.refuse_from(origin, fmt::format("it is not the node of region {}", core::value_of(from)));
-    return true;
-  }
-  expected.source = from;
-  auto decoded = messages::decode(sample, expected);
-  if (const auto* error = std::get_if<messages::WireError>(&decoded)) {
-    reader.refuse_from(origin, *error);
-  } else {
-    peer->second.waiting.push_back(std::move(std::get<messages::SeamParcel>(decoded)));
-  }
-  return true;
 }
 
 /// A region whose node is lost. Without it nobody ends the step, and those who wait for it send nothing.
@@ -168,12 +156,129 @@ std::optional<core::RegionId> DdsSeams::Impl::find_lost() const {
   return std::nullopt;
 }
 
-void DdsSeams::Impl::note_posted(std::chrono::steady_clock::time_point begun) {
+/// A region begins the next step only when all have ended this one.
+void DdsSeams::Impl::expect_same_step(core::RegionId from, const Peer& peer) const {
+  const auto ahead = peer.arrived.ahead();
+  if (!ahead) return;
+  throw core::SeamsBroken(
+      fmt::format("region {} is in another step: piece {} of state {} came instead of parcel {} of {}",
+                  core::value_of(from), ahead->number, ahead->step, peer.arrived.next_parcel(), step));
+}
+
+/// Waits until the next parcel of a region is whole. Asks for what has not come.
+void DdsSeams::Impl::wait_for(core::RegionId from, Peer& peer, std::unique_lock<std::mutex>& lock) {
+  const auto begun = Clock::now();
+  auto silent_since = begun, next_look = begun;
+  Clock::duration asks_after = kSilent;
+  int questions = 0;
+  std::uint64_t arrivals = peer.arrivals;
+  bool is_named = false;
+  while (!peer.arrived.take(peer.last)) {
+    expect_same_step(from, peer);
+    const auto now = Clock::now();
+    if (std::exchange(arrivals, peer.arrivals) != peer.arrivals) silent_since = now, asks_after = kSilent;
+    std::vector<std::uint32_t> lacking;
+    if (now >= silent_since + asks_after) {
+      const auto numbers = peer.arrived.lacking();
+      lacking.assign(numbers.begin(), numbers.end());
+      silent_since = now;
+      if (++questions > 1) asks_after = std::min(2 * asks_after, kLongestSilent);
+    }
+    if (!lacking.empty() || now >= next_look) {
+      lock.unlock();
+      if (!lacking.empty()) ask(from, peer, lacking);
+      if (now >= next_look) {
+        look_at_nodes();
+        expect_alive(from, begun);
+        core::Progress::mark();
+        participant.progress();
+        next_look = now + kLooks;
+      }
+      if (!is_named && now - begun > kLong) {
+        is_named = true;
+        spdlog::warn("region {} waits for region {} in the middle of state {}", core::value_of(settings.region),
+                     core::value_of(from), step);
+      }
+      lock.lock();
+      continue;  // it may have come
+    }
+    waits_for = from;
+    has_come.wait_until(lock, std::min(silent_since + asks_after, next_look));
+    waits_for.reset();
+  }
+}
+
+void DdsSeams::Impl::ask(core::RegionId from, Peer& peer, std::span<const std::uint32_t> lacking) {
+  if (!peer.writer) make_writer(from);
+  messages::encode(header_to(from, 0), settings.map_version, lacking, sample);
+  peer.writer->write(&sample);  // what is lost is asked again
+  const std::lock_guard lock(mutex);
+  ++counters.questions;
+}
+
+/// Takes what has come. Called by DDS threads.
+void DdsSeams::Impl::hear() {
+  const std::lock_guard one_by_one(hearing);
+  Origin origin;
+  while (reader->take(&heard, &origin)) {
+    const core::RegionId from =
+        participant.domain().speakers().home_of(origin.writer).value_or(core::RegionId{heard.source()});
+    const auto peer = peers.find(from);
+    const auto is_of_another = [&] {
+      const std::lock_guard lock(mutex);
+      return peer->second.node && *peer->second.node != origin.writer.guidPrefix;
+    };
+    if (peer == peers.end() || is_of_another()) {
+      reader->refuse_from(origin, fmt::format("it is not the node of region {}", core::value_of(from)));
+      continue;
+    }
+    expected.source = from;
+    auto decoded = messages::decode(heard, expected);
+    if (const auto* error = std::get_if<messages::WireError>(&decoded)) {
+      reader->refuse_from(origin, *error);
+    } else {
+      hear(std::get<messages::SeamPiece>(decoded));
+    }
+  }
+}
+
+void DdsSeams::Impl::hear(const messages::SeamPiece& piece) {
+  const core::RegionId from = piece.header.source;
+  Peer& peer = peers.at(from);
+  bool is_waited_for = false;
+  {
+    const std::lock_guard lock(mutex);
+    if (piece.is_question()) {
+      answer(peer, piece);
+      return;
+    }
+    ++peer.arrivals;
+    peer.arrived.add(piece);
+    is_waited_for = waits_for == from;
+  }
+  if (is_waited_for) has_come.notify_one();
+}
+
+/// Who asks for what is still being computed gets no answer.
+void DdsSeams::Impl::answer(Peer& peer, const messages::SeamPiece& question) {
+  const bool is_of_this_step = question.header.generation == generation && question.header.step == step;
+  const auto now = Clock::now();
+  if (!is_of_this_step || peer.answers == nullptr || now < peer.answered + kBetweenAnswers) return;
+  peer.posted.answer(question.lacking, kMostOfAnAnswer_B, [&](const messages::PostedPieces::Piece& piece) {
+    peer.answered = now;
+    ++counters.repeated;
+    messages::encode(header_to(question.header.source, piece.number), settings.map_version, piece.octets, piece.goes_on,
+                     answer_sample);
+    peer.answers->write(&answer_sample);  // what is lost is asked for again
+  });
+}
+
+void DdsSeams::Impl::note_posted(Clock::time_point begun) {
   if (has_fetched) end_exchange();
   exchange_s += seconds_since(begun);
 }
 
-void DdsSeams::Impl::note_fetched(Peer& peer, std::chrono::steady_clock::time_point begun) {
+void DdsSeams::Impl::note_fetched(Peer& peer, Clock::time_point begun) {
   const double took_s = seconds_since(begun);
   has_fetched = true;
   exchange_s += took_s;
@@ -196,6 +301,11 @@ const ExchangeTimes& DdsSeams::times() {
   return impl_->times;
 }
 
+SeamCounters DdsSeams::counters() const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->counters;
+}
+
 DdsSeams::DdsSeams(Participant& participant, const SeamSettings& settings)
     : impl_(std::make_unique<Impl>(participant, settings)) {}
 
@@ -212,59 +322,57 @@ std::vector<std::string> DdsSeams::unmatched(core::RegionId region) const {
   const auto found = impl_->peers.find(region);
   if (found == impl_->peers.end()) return missing;
   const Peer& peer = found->second;
-  if (peer.is_near && !impl_->reader.watch().any_matched({}, region)) missing.emplace_back("its seam writer");
+  if (peer.is_near && !impl_->reader->watch().any_matched({}, region)) missing.emplace_back("its seam writer");
   if (peer.writer && !peer.writer->reaches(region)) missing.emplace_back("its seam reader");
   return missing;
 }
 
 void DdsSeams::begin(core::Generation generation, core::Step step) {
-  impl_->generation = generation;
-  impl_->step = step;
+  impl_->look_at_nodes();
   impl_->times.seconds.clear();
   impl_->exchange_s = 0;
   impl_->has_fetched = false;
+  const std::lock_guard lock(impl_->mutex);
+  impl_->generation = generation;
+  impl_->step = step;
   for (auto& [region, peer] : impl_->peers) {
-    peer.posted = peer.fetched = 0;
     peer.waited_s = 0;
-    if (peer.writer) peer.writer->forget_acknowledged();
+    peer.posted.begin();
+    peer.arrived.begin(generation, step);
   }
 }
 
 void DdsSeams::post(core::RegionId to, std::span<const std::byte> parcel) {
-  const auto begun = std::chrono::steady_clock::now();
+  const auto begun = Clock::now();
   Peer& peer = impl_->peers.at(to);
-  if (!peer.writer) {
-    impl_->make_writer(to);
-    impl_->wait_for_reader(to);
-  }
-  const messages::SeamHeader header{impl_->settings.region, to, impl_->generation, impl_->step, ++peer.posted};
-  messages::encode(header, impl_->settings.map_version, parcel, impl_->sample);
-  if (peer.writer->write(&impl_->sample) == WriteResult::kFailed) {
-    throw core::SeamsBroken(fmt::format("region {} takes no parcels", core::value_of(to)));
-  }
+  if (!peer.writer) impl_->make_writer(to);
+  const std::size_t most_B = peer.writer->largest_sample_B() - messages::empty_piece_B();
+  do {
+    const std::span<const std::byte> octets = parcel.first(std::min(most_B, parcel.size()));
+    parcel = parcel.subspan(octets.size());
+    std::uint32_t number = 0;
+    {
+      const std::lock_guard lock(impl_->mutex);
+      number = peer.posted.add(octets, !parcel.empty()).number;
+      ++impl_->counters.pieces;
+    }
+    messages::encode(impl_->header_to(to, number), impl_->settings.map_version, octets, !parcel.empty(), impl_->sample);
+    if (peer.writer->write(&impl_->sample) == WriteResult::kFailed) {
+      throw core::SeamsBroken(fmt::format("region {} takes no parcels", core::value_of(to)));
+    }
+  } while (!parcel.empty());
   impl_->note_posted(begun);
 }
 
 std::span<const std::byte> DdsSeams::fetch(core::RegionId from) {
   Peer& peer = impl_->peers.at(from);
-  const auto begun = std::chrono::steady_clock::now();
-  bool is_named = false;
-  for (;;) {
-    impl_->wakeup.clear();
-    if (impl_->take(from, peer)) {
-      impl_->note_fetched(peer, begun);
-      return peer.last.octets;
-    }
-    impl_->expect_alive(from, begun);
-    core::Progress::mark();
-    impl_->participant.progress();
-    impl_->wakeup.wait(5ms);
-    if (!is_named && std::chrono::steady_clock::now() - begun > kLong) {
-      is_named = true;
-      spdlog::warn("region {} waits for region {} in the middle of state {}", core::value_of(impl_->settings.region),
-                   core::value_of(from), impl_->step);
-    }
+  const auto begun = Clock::now();
+  {
+    std::unique_lock lock(impl_->mutex);
+    impl_->wait_for(from, peer, lock);
   }
+  impl_->note_fetched(peer, begun);
+  return peer.last;
 }
 
 }  // namespace aurasim::dds

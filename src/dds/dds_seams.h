@@ -1,4 +1,5 @@
-// Parcels between coupled regions over DDS (topic seam). The thread that computes writes and takes them itself.
+// Parcels between coupled regions over DDS (topic seam, best effort). The thread that computes writes them. A thread of
+// DDS takes what comes, and answers who asks for a piece again (docs/decisions/0063-asked-for-again.md).
 #pragma once
 
 #include <functional>
@@ -25,8 +26,8 @@ struct SeamSettings {
   /// Why no node ends the step although none is known to be lost, such as that others wait for the run to go back.
   /// Nothing: no such reason. Asked several times a second while a parcel is waited for. Empty: there never is one.
   std::function<std::optional<std::string>()> why_stand = {};
-  /// True if a process is the region's node; parcels of others are refused.
-  std::function<bool(core::RegionId, const ProcessPrefix&)> is_node;
+  /// The process that is the region's node, if that is known; parcels of others are refused.
+  std::function<std::optional<ProcessPrefix>(core::RegionId)> node_of = {};
 };
 
 /// Times of the exchanges of one step. In an exchange a region posts parcels to others, and then fetches theirs.
@@ -35,6 +36,13 @@ struct ExchangeTimes {
       seconds;  ///< of each exchange: posting, and waiting for parcels; without what is computed between
   core::RegionId waited_for{};  ///< the region that was waited for longest
   double waited_s = 0;          ///< for it, in all exchanges of the step
+};
+
+/// Since the beginning.
+struct SeamCounters {
+  std::uint64_t pieces = 0;     ///< that were posted
+  std::uint64_t questions = 0;  ///< for pieces that had not come
+  std::uint64_t repeated = 0;   ///< pieces that were sent again
 };
 
 class DdsSeams final : public core::SeamMail {
@@ -50,10 +58,10 @@ class DdsSeams final : public core::SeamMail {
 
   /// The exchanges since begin().
   const ExchangeTimes& times();
+  SeamCounters counters() const;
 
   void begin(core::Generation generation, core::Step step) override;
-  /// The first parcel to a region that is not near makes the writer, and waits until the region's reader is matched.
-  /// Throws core::SeamsBroken if the region takes no parcels, its node is lost, or nobody ends the step.
+  /// The first parcel to a region that is not near makes the writer. Throws core::SeamsBroken if it cannot be sent.
   void post(core::RegionId to, std::span<const std::byte> parcel) override;
   /// Throws core::SeamsBroken once the region's node is lost, or nobody ends the step.
   std::span<const std::byte> fetch(core::RegionId from) override;

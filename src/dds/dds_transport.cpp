@@ -127,10 +127,9 @@ DdsTransport::Impl::Impl(Participant& participant_in, const TransportSettings& s
       wakeup(participant.domain().wakeup()),
       links(participant.domain(), settings.region, settings.life, settings.neighbours) {
   if (!settings.coupled) return;
-  const auto is_node = [this](RegionId region, const ProcessPrefix& process) {
-    Link* const link = links.find(region);
-    const auto node = link == nullptr ? std::nullopt : links.node_of(*link);
-    return !node || *node == process;
+  const auto node_of = [this](RegionId region) {
+    const Link* const link = links.find(region);
+    return link == nullptr ? std::nullopt : links.node_of(*link);
   };
   seams.emplace(participant, SeamSettings{.region = settings.region,
                                           .region_count = settings.region_count,
@@ -139,7 +138,7 @@ DdsTransport::Impl::Impl(Participant& participant_in, const TransportSettings& s
                                           .life = settings.life,
                                           .is_lost = [this](RegionId region) { return is_lost(region); },
                                           .why_stand = settings.why_stand,
-                                          .is_node = is_node});
+                                          .node_of = node_of});
 }
 
 /// True if the process that was the region's node has gone or fallen silent.

@@ -133,7 +133,7 @@ void Domain::register_types(bool announces) {
       guarded<wire::RunControlPubSubType>(announces),  guarded<wire::ReplicaPubSubType>(announces),
       guarded<wire::CommandPubSubType>(announces),     guarded<wire::CommandReplyPubSubType>(announces),
       guarded<wire::MeshShapePubSubType>(announces),   guarded<wire::ClusterGraphPubSubType>(announces),
-      guarded<wire::CheckpointPubSubType>(announces),  guarded<wire::SeamParcelPubSubType>(announces),
+      guarded<wire::CheckpointPubSubType>(announces),  guarded<wire::SeamPiecePubSubType>(announces),
       guarded<wire::SetpointsPubSubType>(announces),   guarded<wire::InterestPubSubType>(announces),
       guarded<wire::ObservationPubSubType>(announces),
   };

@@ -185,7 +185,6 @@ WriteResult Writer::write(void* sample) {
   return message_B <= largest_sample_B() ? write_sample(sample) : write_parts(sample, message_B);
 }
 
-/// Largest serialized sample that Fast DDS sends in one datagram.
 std::uint32_t Writer::largest_sample_B() const {
   std::size_t headers_B = kHeaders_B;
   std::size_t readers = watch_.readers().size();
@@ -290,7 +289,7 @@ std::size_t Writer::foreign_reader_count() const {
       readers, [&](const Guid& reader) { return reader.guidPrefix != writer_->guid().guidPrefix; }));
 }
 
-Reader::Reader(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
+Reader::Reader(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup, std::function<void()> on_data)
     : domain_(domain),
       type_(domain.participant().find_type(domain.topic(spec.topic).get_type_name())),
       part_fields_(part_fields_of(type_)),
@@ -298,6 +297,7 @@ Reader::Reader(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup)
       is_from_hub_(spec.is_from_hub),
       spec_from_hub_(spec_from_hub(spec)),
       watch_(wakeup, [&speakers = domain.speakers()](const Guid& writer) { return speakers.home_of(writer); }) {
+  watch_.tell_data(std::move(on_data));
   look_for_hub();
   if (spec.is_from_hub) {
     watch_.tell_matches([&speakers = domain.speakers()](const Guid& hub, bool is_there) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -58,6 +59,8 @@ class Writer {
   /// Writes one message. `sample` points to the generated type of the topic. A message that does not fit into a
   /// datagram is written in parts (parts.h).
   WriteResult write(void* sample);
+  /// Largest serialized sample that fits into a datagram, with its encapsulation.
+  std::uint32_t largest_sample_B() const;
   /// Writes a sample of another writer, with its number. For a hub.
   WriteResult pass_on(const PassedSample& passed);
   /// Drops all samples from the history, also those that some readers have not acknowledged. Call it before write()
@@ -84,7 +87,6 @@ class Writer {
   WriteResult write_in_two_tries(void* sample, eprosima::fastrtps::rtps::WriteParams& params);
   WriteResult write_sample(void* sample);
   WriteResult write_parts(void* message, std::uint32_t message_B);
-  std::uint32_t largest_sample_B() const;
 
   Domain& domain_;
   eprosima::fastdds::dds::TypeSupport type_;
@@ -119,7 +121,9 @@ struct Origin {
 /// A DDS reader. QoS by profile `<topic>_reader`, or as the spec says.
 class Reader {
  public:
-  Reader(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup);
+  /// `on_data`, if not empty, is called by DDS threads when samples have come; the owner is not woken then. It may take
+  /// samples and write, and must not make or remove endpoints.
+  Reader(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup, std::function<void()> on_data = {});
   ~Reader();
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;

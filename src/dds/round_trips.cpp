@@ -32,7 +32,7 @@ struct RoundTrips::Impl {
   }
 
   void send(core::RegionId to, std::uint32_t number, std::uint32_t what) {
-    messages::encode({self, to, 0, number, what}, *expected.map_version, {}, sample);
+    messages::encode({self, to, 0, number, what}, *expected.map_version, std::span<const std::byte>(), false, sample);
     writers.at(to).write(&sample);  // a message that is not sent counts as lost
   }
   std::vector<Answer> take(std::uint32_t what);
@@ -42,7 +42,7 @@ struct RoundTrips::Impl {
   Reader reader;                             ///< of the questions, or answers, of all peers
   std::map<core::RegionId, Writer> writers;  ///< by peer
   messages::Expected expected;
-  wire::SeamParcel sample;  // reused
+  wire::SeamPiece sample;  // reused
 };
 
 std::vector<RoundTrips::Answer> RoundTrips::Impl::take(std::uint32_t what) {
@@ -63,7 +63,7 @@ std::vector<RoundTrips::Answer> RoundTrips::Impl::take(std::uint32_t what) {
       reader.refuse_from(origin, *error);
       continue;
     }
-    const messages::SeamHeader& header = std::get<messages::SeamParcel>(decoded).header;
+    const messages::SeamHeader& header = std::get<messages::SeamPiece>(decoded).header;
     if (header.number == what) taken.push_back({region, static_cast<std::uint32_t>(header.step)});
   }
   return taken;

@@ -20,7 +20,9 @@ constexpr std::size_t kMaxLost = 1000;
 
 }  // namespace
 
-void ReaderWatch::on_data_available(eprosima::fastdds::dds::DataReader*) { wakeup_.notify(); }
+void ReaderWatch::on_data_available(eprosima::fastdds::dds::DataReader*) {
+  tell_data_ ? tell_data_() : wakeup_.notify();
+}
 
 void ReaderWatch::on_subscription_matched(eprosima::fastdds::dds::DataReader*,
                                           const eprosima::fastdds::dds::SubscriptionMatchedStatus& status) {

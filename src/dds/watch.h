@@ -57,6 +57,9 @@ class ReaderWatch final : public eprosima::fastdds::dds::DataReaderListener {
   /// Sets what is called for each match of a writer, and for its end. Call it before the reader exists. It runs in DDS
   /// threads.
   void tell_matches(std::function<void(const Guid&, bool is_matched)> tell) { tell_match_ = std::move(tell); }
+  /// Sets what is called, instead of waking the owner, when samples have come. Call it before the reader exists. It
+  /// runs in DDS threads.
+  void tell_data(std::function<void()> tell) { tell_data_ = std::move(tell); }
 
   void on_data_available(eprosima::fastdds::dds::DataReader* reader) override;
   void on_subscription_matched(eprosima::fastdds::dds::DataReader* reader,
@@ -87,6 +90,7 @@ class ReaderWatch final : public eprosima::fastdds::dds::DataReaderListener {
   Wakeup& wakeup_;
   RegionOf region_of_;
   std::function<void(const Guid&, bool)> tell_match_;
+  std::function<void()> tell_data_;
   std::chrono::nanoseconds grace_{0};
   mutable std::mutex mutex_;
   std::vector<RemoteWriter> writers_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "core/find_ascending.h"
 #include "physics/bullet_convert.h"
 #include "physics/moving_body.h"
 #include "physics/prefetch.h"
@@ -62,13 +63,7 @@ HostedBody* BodyTable::find(core::BodyId id, std::size_t& near) {
 }
 
 const HostedBody* BodyTable::find(core::BodyId id, std::size_t& near) const {
-  const auto belongs_at = [&](std::size_t place) {
-    return (place == 0 || bodies_[place - 1].id < id) && (place == bodies_.size() || id <= bodies_[place].id);
-  };
-  if (near < bodies_.size() && bodies_[near].id < id) ++near;
-  if (near > bodies_.size() || !belongs_at(near)) {
-    near = static_cast<std::size_t>(std::ranges::lower_bound(bodies_, id, {}, &HostedBody::id) - bodies_.begin());
-  }
+  near = core::find_ascending(bodies_, id, &HostedBody::id, near);
   return near < bodies_.size() && bodies_[near].id == id ? &bodies_[near] : nullptr;
 }
 

@@ -40,7 +40,7 @@ class BodyTable {
   /// The body with this id, or null if it is not here. Valid until bodies come or go.
   HostedBody* find(core::BodyId id);
   const HostedBody* find(core::BodyId id) const;
-  /// Like find(id), for a series of ascending ids: no search is needed where no other body lies between two of them.
+  /// Like find(id), for a series of ascending ids: the search is short where few other bodies lie between two of them.
   /// `near` is 0 for the first call and is updated by each.
   HostedBody* find(core::BodyId id, std::size_t& near);
   const HostedBody* find(core::BodyId id, std::size_t& near) const;

@@ -179,14 +179,17 @@ void Simulation::meet_far() {
     if (!is_within(body.reach, owners.territory(coupling_->self)))
       far.push_back({body.id, coupling_->self, body.reach});
   }
-  const auto look_at = [&](core::BodyId id, core::RegionId host) {
-    const btRigidBody& body = *table_.find(id)->rigid;
+  const auto look_at = [&](core::BodyId id, core::RegionId host, const btRigidBody& body) {
     if (is_within(around_reach_of(body), owners.territory(host))) return;
     const Bounds reach = reach_of(body);
     if (!is_within(reach, owners.territory(host))) far.push_back({id, host, reach});
   };
-  for (const Moved& arrived : arrived_) look_at(arrived.body.id, coupling_->self);
-  for (const core::BodyId id : guests_) look_at(id, place_of(*table_.find(id)->rigid).host);
+  for (const Moved& arrived : arrived_) look_at(arrived.body.id, coupling_->self, *table_.find(arrived.body.id)->rigid);
+  std::size_t near = 0;
+  for (const core::BodyId id : guests_) {
+    const btRigidBody& guest = *table_.find(id, near)->rigid;
+    look_at(id, place_of(guest).host, guest);
+  }
   std::map<core::RegionId, Halo> answers;
   std::vector<core::RegionId> expected;
   for (const Far& one : far) {
@@ -282,8 +285,9 @@ void Simulation::take_guests(std::vector<Visit>& visits) {
   const auto twins = std::ranges::unique(visits, {}, id_of);  // several regions may answer with the same body
   visits.erase(twins.begin(), twins.end());
   std::vector<HostedBody> arrivals;
+  std::size_t near = 0;
   for (const Visit& visit : visits) {
-    HostedBody* body = table_.find(visit.body.id);
+    HostedBody* body = table_.find(visit.body.id, near);
     if (body == nullptr) {
       arrivals.push_back(make_body(visit.body));
       arrivals.back().is_guest = place_of(*arrivals.back().rigid).is_guest = true;
@@ -301,8 +305,9 @@ void Simulation::take_guests(std::vector<Visit>& visits) {
     insert(std::move(arrivals));
     insert_born();
   }
+  near = 0;
   for (const Visit& visit : visits) {
-    btRigidBody& body = *table_.find(visit.body.id)->rigid;
+    btRigidBody& body = *table_.find(visit.body.id, near)->rigid;
     BodyPlace& place = place_of(body);
     place.host = visit.host, place.met = meeting_;
     guests_.push_back(visit.body.id);

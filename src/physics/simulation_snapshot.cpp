@@ -5,6 +5,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/find_ascending.h"
 #include "core/keep_one_of_each.h"
 #include "core/progress.h"
 #include "core/regroup.h"
@@ -160,10 +161,11 @@ bool Simulation::regroup_snapshot() {
   std::vector<core::BodyState>& bodies = snapshot_.bodies;
   std::vector<std::uint32_t> gone, came;
   std::vector<core::BodyId> ids_of_came;
-  const auto place_of = [&bodies](core::BodyId id) {
-    return static_cast<std::uint32_t>(std::ranges::lower_bound(bodies, id, {}, &core::BodyState::id) - bodies.begin());
+  std::size_t near = 0, place = 0;
+  const auto place_of = [&](core::BodyId id) {
+    place = core::find_ascending(bodies, id, &core::BodyState::id, place);
+    return static_cast<std::uint32_t>(place);
   };
-  std::size_t near = 0;
   for (const core::BodyId id : notes_.for_snapshot.ids()) {
     const std::uint32_t before = place_of(id);
     const bool was = before < bodies.size() && bodies[before].id == id;

@@ -44,9 +44,9 @@ constexpr std::array<Topic, kTopicCount> kTopics = {{
      "setpoints of programs for bodies, joints and statics, from a state on: see [Setpoints](#setpoints)"},
     {TopicId::kCheckpoint, "checkpoint", "aurasim::wire::Checkpoint", Division::kByPairAndToAll, true, kNodes, kNodes,
      "a region's part of the world in one state, as in a file: to be kept, or to go back to"},
-    {TopicId::kSeam, "seam", "aurasim::wire::SeamParcel", Division::kByPair, true, kNodes, kNodes,
+    {TopicId::kSeam, "seam", "aurasim::wire::SeamPiece", Division::kByPair, true, kNodes, kNodes,
      "where regions are coupled, several in each step: bodies near the border, and movers of common contacts"},
-    {TopicId::kProbe, "probe", "aurasim::wire::SeamParcel", Division::kByPair, false, kNodes, kNodes,
+    {TopicId::kProbe, "probe", "aurasim::wire::SeamPiece", Division::kByPair, false, kNodes, kNodes,
      "before the start of a run with `exchange: auto`: questions of region 0 and the answers, to measure round trips"},
 }};
 
