@@ -8,6 +8,7 @@
 #include "config/shipped_files.h"
 #include "host/long_work.h"
 #include "overseer/web_setup.h"
+#include "process/exchange_choice.h"
 #include "setup/launch_setup.h"
 #include "setup/scene_warnings.h"
 
@@ -34,6 +35,8 @@ void add_check(CLI::App& program, command_line::Action& action) {
                 ? fmt::format("auto: coupled if round trips take at most {:.3g} ms when the nodes meet, else aura",
                               1e3 * launch.exchange_limit_s())
                 : std::string("coupled"));
+        if (const std::string moved = process::words_of_moved_borders(launch); !moved.empty())
+          fmt::print("{}\n", moved);
       } else if (launch.regions.size() > 1 && !launch.why_exchange.empty()) {
         fmt::print("exchange: auto means aura: {}\n", launch.why_exchange);
       }

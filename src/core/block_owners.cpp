@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 #include "core/block.h"
@@ -16,6 +17,18 @@ constexpr double kApart_m = 0.001;
 
 /// The first edge of blocks from which on their centres are at `x` or beyond.
 double edge_at(double x, double side_m) { return std::isfinite(x) ? std::ceil(x / side_m - 0.5) * side_m : x; }
+
+/// Coordinates of the borders between regions, along x and along y, m.
+std::vector<double> borders_of(const RegionMap& map) {
+  std::vector<double> borders;
+  for (std::uint32_t i = 0; i < map.size(); ++i) {
+    const Rectangle& region = map.region(RegionId{i});
+    for (const double at : {region.x0, region.y0, region.x1, region.y1}) {
+      if (std::isfinite(at)) borders.push_back(at);
+    }
+  }
+  return borders;
+}
 
 Rectangle grown(const Rectangle& area, double by_m) {
   return {area.x0 - by_m, area.y0 - by_m, area.x1 + by_m, area.y1 + by_m};
@@ -41,6 +54,29 @@ BlockOwners::BlockOwners(const RegionMap& map, double side_m, double reach_m, do
 }
 
 bool BlockOwners::are_near(RegionId a, RegionId b) const { return surroundings(a).distance(surroundings(b)) == 0; }
+
+double farthest_move_m(const RegionMap& map, double side_m) {
+  double farthest_m = 0;
+  for (const double at : borders_of(map)) farthest_m = std::max(farthest_m, std::abs(edge_at(at, side_m) - at));
+  return farthest_m;
+}
+
+std::optional<double> side_that_moves_none(const RegionMap& map, double longest_m) {
+  constexpr double kGrain_m = 0.001;
+  const std::vector<double> borders = borders_of(map);
+  const auto grains = [](double length_m) { return std::llround(length_m / kGrain_m); };
+  long long common = 0;  // divides all borders
+  for (const double at : borders) {
+    if (std::abs(at - static_cast<double>(grains(at)) * kGrain_m) > kGrain_m / 1000) return std::nullopt;
+    common = std::gcd(common, grains(at));
+  }
+  if (common == 0) return longest_m;
+  for (long long parts = 1; common / parts >= grains(longest_m / 4); ++parts) {
+    if (common % parts == 0 && common / parts <= grains(longest_m))
+      return static_cast<double>(common / parts) * kGrain_m;
+  }
+  return std::nullopt;
+}
 
 double usual_reach_m(const std::vector<double>& radii_m, double side_m) {
   double largest = 0;

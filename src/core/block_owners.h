@@ -1,6 +1,7 @@
 // Which region owns which block (core/block.h). Where regions are coupled, a body's host is the owner of its block.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/region_map.h"
@@ -36,6 +37,13 @@ class BlockOwners {
   double side_m_;
   std::vector<Rectangle> blocks_, territories_, surroundings_, interiors_;
 };
+
+/// How far the farthest border of a map is moved, so that regions consist of whole blocks, m.
+double farthest_move_m(const RegionMap& map, double side_m);
+
+/// The longest side of blocks that moves no border: from `longest_m` / 4 to `longest_m`, in whole millimetres. Nothing:
+/// there is none.
+std::optional<double> side_that_moves_none(const RegionMap& map, double longest_m);
 
 /// How far bodies of a scene with these bounding radii usually extend beyond their blocks, m. Larger and faster ones
 /// cost one message more in a step.

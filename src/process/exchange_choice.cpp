@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "config/launch_checks.h"
+#include "core/block_owners.h"
 
 namespace aurasim::process {
 namespace {
@@ -91,6 +92,15 @@ std::string words_of_choice(config::Exchange chosen, const RoundTrip& slowest, d
 
 std::string words_of_only_choice(const config::Launch& launch) {
   return fmt::format("exchange: auto means {}: {}", launch.is_coupled() ? "coupled" : "aura", launch.why_exchange);
+}
+
+std::string words_of_moved_borders(const config::Launch& launch) {
+  constexpr double kLeast_m = 0.001;
+  const double side_m = launch.block_m(), moved_m = core::farthest_move_m(launch.regions, side_m);
+  if (moved_m < kLeast_m) return "";
+  const auto other_m = core::side_that_moves_none(launch.regions, side_m);
+  return fmt::format("coupled regions consist of whole blocks of {:g} m: borders are moved by up to {:.3g} m{}", side_m,
+                     moved_m, other_m ? fmt::format("; physics.block: {:g} moves none", *other_m) : "");
 }
 
 std::string remedy_for_heaps(const config::Launch& launch, double round_trip_ms, bool is_one_host) {

@@ -70,6 +70,10 @@ std::string words_of_choice(config::Exchange chosen, const RoundTrip& slowest, d
 /// The same where `auto` in the launch file can mean only one of the two.
 std::string words_of_only_choice(const config::Launch& launch);
 
+/// Text for users: how far borders of coupled regions are moved to edges of blocks, and how not to. Empty: they are
+/// not.
+std::string words_of_moved_borders(const config::Launch& launch);
+
 /// Text for users: the keys that help a run with auras whose bodies are one cluster. `round_trip_ms`: as in the status.
 std::string remedy_for_heaps(const config::Launch& launch, double round_trip_ms, bool is_one_host);
 

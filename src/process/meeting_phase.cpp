@@ -72,11 +72,16 @@ bool MeetingPhase::receives_from_others() {
 }
 
 bool MeetingPhase::agree_on_exchange() {
-  if (run_.launch.exchange != config::Exchange::kAuto) {
-    const bool is_lead = run_.options.region == core::RegionId{0} && run_.launch.regions.size() > 1;
-    if (is_lead && !run_.launch.why_exchange.empty()) spdlog::info("{}", words_of_only_choice(run_.launch));
-    return true;
-  }
+  if (run_.launch.exchange == config::Exchange::kAuto && !measure_exchange()) return false;
+  const bool is_lead = run_.options.region == core::RegionId{0} && run_.launch.regions.size() > 1;
+  if (!is_lead) return true;
+  if (!run_.launch.why_exchange.empty()) spdlog::info("{}", words_of_only_choice(run_.launch));
+  if (!run_.launch.is_coupled()) return true;
+  if (const std::string moved = words_of_moved_borders(run_.launch); !moved.empty()) spdlog::info("{}", moved);
+  return true;
+}
+
+bool MeetingPhase::measure_exchange() {
   const auto began = Clock::now();
   Patience patience(run_.options.start_time_out, began);
   host::LongWork waiting = waiting_for_nodes(run_.launch.regions.size());

@@ -30,6 +30,7 @@ class MeetingPhase {
  private:
   bool finds_hub();
   bool another_run_is_here();
+  bool measure_exchange();
   void measure(dds::RoundTrips& trips, RoundTripBook& book);
   bool receives_from_others();
   void note_meeting(Patience& patience, host::LongWork& waiting);

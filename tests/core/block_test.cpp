@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/block_owners.h"
 #include "core/mechanisms.h"
 #include "core/scene.h"
 
@@ -106,6 +107,27 @@ TEST(Mechanisms, AreNamedByTheirFirstBody) {
     found.emplace_back(value_of(bound.body), value_of(bound.first));
   }
   EXPECT_EQ(found, (std::vector<std::pair<std::uint64_t, std::uint64_t>>{{3, 3}, {4, 3}, {9, 3}, {20, 20}, {30, 20}}));
+}
+
+TEST(BlockOwners, SayHowFarBordersAreMovedAndWhichSideMovesNone) {
+  const RegionMap columns = RegionMap::columns(8, 40);  // borders at multiples of 40
+  EXPECT_DOUBLE_EQ(farthest_move_m(columns, 16), 8);
+  EXPECT_DOUBLE_EQ(side_that_moves_none(columns, 16).value(), 10);
+  EXPECT_DOUBLE_EQ(farthest_move_m(columns, 10), 0);
+  EXPECT_DOUBLE_EQ(side_that_moves_none(columns, 40).value(), 40);
+  const RegionMap thirds = RegionMap::columns(2, 10.0 / 3);  // its border is at 0
+  EXPECT_DOUBLE_EQ(farthest_move_m(thirds, 3), 0);
+  EXPECT_FALSE(side_that_moves_none(RegionMap::columns(3, 10.0 / 3), 3)) << "not in whole millimetres";
+  EXPECT_FALSE(side_that_moves_none(RegionMap::columns(3, 2), 16)) << "far shorter blocks";
+  for (const double width_m : {7.0, 12.5, 33.0, 80.0}) {
+    for (const double side_m : {4.0, 10.0, 16.0}) {
+      const RegionMap map = RegionMap::grid(3, 4, width_m, 2 * width_m);
+      const auto none_m = side_that_moves_none(map, side_m);
+      if (!none_m) continue;
+      EXPECT_LE(*none_m, side_m);
+      EXPECT_LT(farthest_move_m(map, *none_m), 1e-9) << width_m << " " << side_m;
+    }
+  }
 }
 
 }  // namespace

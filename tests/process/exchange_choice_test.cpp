@@ -94,6 +94,17 @@ TEST_F(ExchangeChoiceTest, TheLogNamesTheSlowestLinkAndTheKey) {
   EXPECT_THAT(words_of_choice(Exchange::kAura, far, 0.000245), HasSubstr("up to 0.245 ms (exchange_limit)"));
 }
 
+TEST_F(ExchangeChoiceTest, TheLogSaysHowFarBordersAreMovedAndHowNotTo) {
+  config::Launch launch;
+  launch.regions = core::RegionMap::columns(8, 40);
+  launch.physics.block_m = 16;
+  EXPECT_EQ(words_of_moved_borders(launch),
+            "coupled regions consist of whole blocks of 16 m: borders are moved by up to 8 m; physics.block: 10 moves "
+            "none");
+  launch.physics.block_m = 10;
+  EXPECT_EQ(words_of_moved_borders(launch), "");
+}
+
 TEST_F(ExchangeChoiceTest, ANodeThatComesLaterTakesWhatLiveNodesOfItsRunUse) {
   std::map<RegionId, messages::SeenStatus> nodes;
   const auto add = [&](std::uint32_t region, messages::ExchangeInUse exchange, std::uint64_t agreement, bool lost) {
