@@ -43,7 +43,7 @@ WORLDS = {
                        "velocity": "{min: [-3, -3, -6], max: [3, 3, 0]}"}},
 }
 LAUNCH = """scene: scene.yaml
-time: {pace: none, lookahead: 1, substeps: 4}
+time: {pace: none, sync: deterministic, lookahead: 1, substeps: 4}
 physics: {solver: soft_step, threads: 1}
 tolerances: {speed: 40, latency: 0.002, frame: 0.014}
 """

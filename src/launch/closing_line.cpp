@@ -12,6 +12,7 @@ std::string closing_line(const std::map<core::RegionId, messages::SeenStatus>& s
                          bool has_begun, double step_s) {
   if (!has_begun) return "the run has not begun\n";
   std::uint64_t bodies = 0, hand_offs = 0, late = 0, missed = 0;
+  std::map<std::string, std::uint64_t> violations;
   core::Step step = 0;
   std::vector<std::uint32_t> unknown;
   for (std::uint32_t r = 0; r < regions; ++r) {
@@ -26,6 +27,11 @@ std::string closing_line(const std::map<core::RegionId, messages::SeenStatus>& s
     hand_offs += status.hand_offs_out;
     late += status.late_collisions;
     missed += status.missed_collisions;
+    violations["speed"] += status.violations.speed;
+    violations["latency"] += status.violations.latency;
+    violations["frame"] += status.violations.frame;
+    violations["promise"] += status.violations.promise;
+    violations["span"] += status.violations.span;
   }
   if (unknown.size() == regions) {
     return fmt::format(
@@ -35,8 +41,17 @@ std::string closing_line(const std::map<core::RegionId, messages::SeenStatus>& s
   const std::string lacking =
       unknown.empty() ? ""
                       : fmt::format("; without regions [{}], whose bodies are not known", fmt::join(unknown, ", "));
-  return fmt::format("ended with state {}, {:.2f} s: {} bodies, {} hand-offs, {} late and {} missed collisions{}\n",
-                     step, static_cast<double>(step) * step_s, bodies, hand_offs, late, missed, lacking);
+  return fmt::format("ended with state {}, {:.2f} s: {} bodies, {} hand-offs, {} late and {} missed collisions{}{}\n",
+                     step, static_cast<double>(step) * step_s, bodies, hand_offs, late, missed,
+                     words_of_broken_promises(violations), lacking);
+}
+
+std::string words_of_broken_promises(const std::map<std::string, std::uint64_t>& by_kind) {
+  std::vector<std::string> words;
+  for (const auto& [kind, count] : by_kind) {
+    if (count > 0) words.push_back(fmt::format("{} {}", kind, count));
+  }
+  return words.empty() ? "" : fmt::format("; broken promises: {}", fmt::join(words, ", "));
 }
 
 }  // namespace aurasim::launch

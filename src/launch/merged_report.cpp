@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "host/terminal.h"
+#include "launch/closing_line.h"
 
 namespace aurasim::launch {
 namespace {
@@ -22,18 +23,19 @@ std::string cost_of_redos(const records::Accounts& accounts) {
 std::string closing_line(const records::Accounts& accounts) {
   if (accounts.incomplete.empty()) {
     return fmt::format(
-        "{} bodies alive, {} lost, {} duplicated; {} hand-offs, {} thrashed; real-time factor {:.3f}{}\n",
+        "{} bodies alive, {} lost, {} duplicated; {} hand-offs, {} thrashed; real-time factor {:.3f}{}{}\n",
         accounts.bodies, accounts.lost, accounts.duplicated, accounts.hand_offs, accounts.thrashed,
-        accounts.real_time_factor, cost_of_redos(accounts));
+        accounts.real_time_factor, cost_of_redos(accounts), words_of_broken_promises(accounts.violations));
   }
   std::vector<std::uint32_t> regions;
   for (const records::IncompleteRegion& region : accounts.incomplete) regions.push_back(core::value_of(region.region));
   return fmt::format(
       "{} bodies alive for sure, {} duplicated; not known of {} bodies: alive or lost, since the records of regions "
       "[{}] "
-      "end before the run; at least {} hand-offs, {} thrashed; real-time factor {:.3f}{}\n",
+      "end before the run; at least {} hand-offs, {} thrashed; real-time factor {:.3f}{}{}\n",
       accounts.bodies, accounts.duplicated, accounts.unaccounted, fmt::join(regions, ", "), accounts.hand_offs,
-      accounts.thrashed, accounts.real_time_factor, cost_of_redos(accounts));
+      accounts.thrashed, accounts.real_time_factor, cost_of_redos(accounts),
+      words_of_broken_promises(accounts.violations));
 }
 
 command_line::ExitCode merge_and_print(const std::filesystem::path& folder, const records::RunFacts& facts,

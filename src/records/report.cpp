@@ -231,13 +231,12 @@ class Merge {
 
   void write_summary() {
     std::uint64_t violations = 0;
-    Json by_kind = Json::object();
     double factor = 1e9;
     std::uint64_t steps = 0;
     for (const Json& node : nodes_) {
       if (!node.contains("violations")) continue;
       for (const auto& [kind, count] : node["violations"].items()) {
-        by_kind[kind] = by_kind.value(kind, std::uint64_t{0}) + count.get<std::uint64_t>();
+        accounts_.violations[kind] += count.get<std::uint64_t>();
         violations += count.get<std::uint64_t>();
       }
       factor = std::min(factor, node.value("real_time_factor", 0.0));
@@ -283,7 +282,7 @@ class Merge {
         {"redos", all_redos},
         {"redo_share", accounts_.redo_share},
         {"violations", violations},
-        {"violations_by_kind", by_kind},
+        {"violations_by_kind", accounts_.violations},
         {"regions", frame_times()},
         {"nodes", nodes_},
     };

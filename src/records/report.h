@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -39,7 +40,8 @@ struct Accounts {
   std::uint64_t thrashed = 0;
   double real_time_factor = 0;
   std::size_t redos = 0;
-  double redo_share = 0;  ///< share of the nodes' computing time that went into redos
+  double redo_share = 0;                            ///< share of the nodes' computing time that went into redos
+  std::map<std::string, std::uint64_t> violations;  ///< by kind
   std::vector<DeadRegion> dead;
   std::vector<IncompleteRegion> incomplete;
   std::vector<std::string> not_merged;  ///< merged files that did not fit on the disk

@@ -25,6 +25,15 @@ TEST_F(ClosingLine, SumsWhatTheNodesHaveSaidLast) {
   EXPECT_EQ(line(), "ended with state 600, 10.00 s: 12 bodies, 33 hand-offs, 3 late and 0 missed collisions\n");
 }
 
+TEST_F(ClosingLine, NamesThePromisesThatWereBroken) {
+  end(0, 5), end(1, 0), end(2, 7);
+  statuses_[core::RegionId{0}].status.violations.frame = 3;
+  statuses_[core::RegionId{1}].status.violations = {.speed = 1, .frame = 4};
+  EXPECT_EQ(line(),
+            "ended with state 600, 10.00 s: 12 bodies, 33 hand-offs, 3 late and 0 missed collisions; broken "
+            "promises: frame 7, speed 1\n");
+}
+
 TEST_F(ClosingLine, NamesThoseOfWhomNothingIsKnown) {
   end(0, 5), end(1, 9, messages::NodeState::kRunning);
   EXPECT_EQ(line(),

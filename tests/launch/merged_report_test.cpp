@@ -25,6 +25,14 @@ TEST(ClosingLineOfAReport, SaysWhatRedosTookWhereThereWereAny) {
   EXPECT_THAT(closing_line(accounts), HasSubstr("; 3 redos took 12.3 % of the computing time\n"));
 }
 
+TEST(ClosingLineOfAReport, NamesThePromisesThatWereBroken) {
+  records::Accounts accounts;
+  accounts.violations = {{"frame", 0}, {"promise", 5176}};
+  EXPECT_THAT(closing_line(accounts), HasSubstr("; broken promises: promise 5176\n"));
+  accounts.violations.clear();
+  EXPECT_THAT(closing_line(accounts), Not(HasSubstr("promise")));
+}
+
 /// A disk was full: nobody has written down who is there.
 TEST(ClosingLineOfAReport, SaysWhatIsNotKnown) {
   records::Accounts accounts;
