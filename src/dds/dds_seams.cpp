@@ -40,6 +40,7 @@ double seconds_since(Clock::time_point begun) { return std::chrono::duration<dou
 struct Peer {
   bool is_near = false;
   std::optional<Writer> writer;  ///< of a peer that is not near: once a parcel goes to it
+  std::mutex writing;            ///< held to write: the times of samples have to rise with their numbers
   double waited_s = 0;           ///< in this step
   std::vector<std::byte> last;   ///< parcel
 
@@ -168,7 +169,7 @@ void DdsSeams::Impl::expect_same_step(core::RegionId from, const Peer& peer) con
 /// Waits until the next parcel of a region is whole. Asks for what has not come.
 void DdsSeams::Impl::wait_for(core::RegionId from, Peer& peer, std::unique_lock<std::mutex>& lock) {
   const auto begun = Clock::now();
-  auto silent_since = begun, next_look = begun;
+  auto silent_since = begun, next_look = begun + kLooks;
   Clock::duration asks_after = kSilent;
   int questions = 0;
   std::uint64_t arrivals = peer.arrivals;
@@ -211,7 +212,10 @@ void DdsSeams::Impl::wait_for(core::RegionId from, Peer& peer, std::unique_lock<
 void DdsSeams::Impl::ask(core::RegionId from, Peer& peer, std::span<const std::uint32_t> lacking) {
   if (!peer.writer) make_writer(from);
   messages::encode(header_to(from, 0), settings.map_version, lacking, sample);
-  peer.writer->write(&sample);  // what is lost is asked again
+  {
+    const std::lock_guard alone(peer.writing);
+    peer.writer->write(&sample);  // what is lost is asked again
+  }
   const std::lock_guard lock(mutex);
   ++counters.questions;
 }
@@ -269,6 +273,7 @@ void DdsSeams::Impl::answer(Peer& peer, const messages::SeamPiece& question) {
     ++counters.repeated;
     messages::encode(header_to(question.header.source, piece.number), settings.map_version, piece.octets, piece.goes_on,
                      answer_sample);
+    const std::lock_guard alone(peer.writing);
     peer.answers->write(&answer_sample);  // what is lost is asked for again
   });
 }
@@ -357,6 +362,7 @@ void DdsSeams::post(core::RegionId to, std::span<const std::byte> parcel) {
       ++impl_->counters.pieces;
     }
     messages::encode(impl_->header_to(to, number), impl_->settings.map_version, octets, !parcel.empty(), impl_->sample);
+    const std::lock_guard alone(peer.writing);
     if (peer.writer->write(&impl_->sample) == WriteResult::kFailed) {
       throw core::SeamsBroken(fmt::format("region {} takes no parcels", core::value_of(to)));
     }

@@ -48,7 +48,7 @@ inline EndpointSpec on(TopicId topic, const topics::Route& route = {}, std::opti
 enum class WriteResult : std::uint8_t { kSent, kSentAtSecondTry, kFailed };
 
 /// A DDS writer. QoS by profile `<topic>_writer`, or as the spec says. A writer with MANUAL_BY_TOPIC liveliness is kept
-/// alive by the domain's liveliness asserter.
+/// alive by the domain's liveliness asserter. One thread at a time may write.
 class Writer {
  public:
   Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup);

@@ -14,7 +14,7 @@ namespace aurasim::launch {
 std::string closing_line(const std::map<core::RegionId, messages::SeenStatus>& statuses, std::size_t regions,
                          bool has_begun, double step_s);
 
-/// "; broken promises: frame 3, speed 1", or empty if there are none. `by_kind`: docs/glossary.md, "violation".
+/// "; broken promises: frame 3, speed 1", or empty if there are none. `by_kind`: docs/glossary.md.
 std::string words_of_broken_promises(const std::map<std::string, std::uint64_t>& by_kind);
 
 }  // namespace aurasim::launch

@@ -38,7 +38,13 @@ double ahead_s(const messages::RunCommand& command, std::int64_t now_ns) {
 }  // namespace
 
 void RunControlLimits::note(core::Step step, Time now) {
-  if (!past_.empty() && step < past_.back().step) past_.clear();  // put back
+  if (!past_.empty() && step < past_.back().step) {  // put back: states before `step` stay past
+    const Time oldest = past_.front().when;
+    while (!past_.empty() && past_.back().step >= step) past_.pop_back();
+    if (past_.empty()) past_.push_back({oldest, step});
+    past_.push_back({now, step});
+    return;
+  }
   if (!past_.empty() && now < past_.back().when + kLookEvery) return;
   past_.push_back({now, step});
   while (past_.size() > 1 && past_[1].when + kLongestWay <= now) past_.pop_front();

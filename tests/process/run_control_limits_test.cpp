@@ -65,6 +65,22 @@ TEST_F(ARunCommand, AfterTheRunHasGoneBackMayNameWhatIsAheadAgain) {
   EXPECT_THAT(problem(Kind::kPause, 700), IsEmpty());
 }
 
+/// A command that named a state of long ago was believed for five seconds after a redo.
+TEST_F(ARunCommand, AfterTheRunHasGoneBackMayNotNameWhatWasPastAllTheSame) {
+  run_for(20s);
+  for (const core::Step back : {step_ - 4, step_ - 30, core::Step{600}}) {
+    limits_.note(back, now_);
+    EXPECT_THAT(problem(Kind::kStop, 0), HasSubstr("was past")) << back;
+    EXPECT_THAT(problem(Kind::kStop, back), IsEmpty()) << back;
+    EXPECT_THAT(problem(Kind::kStop, back + 200), IsEmpty()) << back;
+    step_ = back;
+    run_for(2s);
+    EXPECT_THAT(problem(Kind::kStop, 0), HasSubstr("was past")) << back;
+  }
+  limits_.note(0, now_);
+  EXPECT_THAT(problem(Kind::kStop, 0), IsEmpty()) << "the run is there again";
+}
+
 TEST_F(ARunCommand, NamesATimeWithinAMinute) {
   for (const Kind kind : {Kind::kStart, Kind::kReset, Kind::kResume, Kind::kStep, Kind::kRate}) {
     EXPECT_THAT(problem(kind, 10, kNow + 10 * kSecond), IsEmpty());
