@@ -84,7 +84,6 @@ json nodes_json(const std::map<core::RegionId, messages::SeenStatus>& nodes) {
   json all = json::array();
   for (const auto& [region, seen] : nodes) {
     const messages::Status& status = seen.status;
-    const messages::Violations& v = status.violations;
     json dead = json::array();
     for (const core::RegionId other : status.dead) dead.push_back(core::value_of(other));
     all.push_back({{"region", core::value_of(region)},
@@ -97,7 +96,7 @@ json nodes_json(const std::map<core::RegionId, messages::SeenStatus>& nodes) {
                    {"foreign_auras", status.foreign_auras},
                    {"hand_offs_out", status.hand_offs_out},
                    {"hand_offs_in", status.hand_offs_in},
-                   {"violations", v.speed + v.latency + v.frame + v.promise + v.span},
+                   {"violations", status.violations.total()},
                    {"redos", status.redos},
                    {"setpoints_heard", status.setpoints_heard},
                    {"setpoints_late", status.setpoints_late},

@@ -37,10 +37,27 @@ constexpr std::size_t kMostOfAnAnswer_B = std::size_t{256} << 10;
 
 double seconds_since(Clock::time_point begun) { return std::chrono::duration<double>(Clock::now() - begun).count(); }
 
+/// When a region that is waited for is asked.
+class Asking {
+ public:
+  explicit Asking(Clock::time_point begun) : since_(begun) {}
+
+  Clock::time_point due() const { return since_ + after_; }
+  void note_heard(Clock::time_point now) { *this = Asking(now); }
+  void note_asked(Clock::time_point now) {
+    since_ = now;
+    if (std::exchange(has_asked_, true)) after_ = std::min(2 * after_, kLongestSilent);
+  }
+
+ private:
+  Clock::time_point since_;
+  Clock::duration after_ = kSilent;
+  bool has_asked_ = false;
+};
+
 struct Peer {
   bool is_near = false;
   std::optional<Writer> writer;  ///< of a peer that is not near: once a parcel goes to it
-  std::mutex writing;            ///< held to write: the times of samples have to rise with their numbers
   double waited_s = 0;           ///< in this step
   std::vector<std::byte> last;   ///< parcel
 
@@ -60,13 +77,13 @@ struct DdsSeams::Impl {
 
   void make_writer(core::RegionId to);
   void look_at_nodes();
-  void expect_alive(core::RegionId region, Clock::time_point begun);
+  void look_around(Clock::time_point begun);
   std::optional<core::RegionId> find_lost() const;
   void expect_same_step(core::RegionId from, const Peer& peer) const;
   void wait_for(core::RegionId from, Peer& peer, std::unique_lock<std::mutex>& lock);
   void ask(core::RegionId from, Peer& peer, std::span<const std::uint32_t> lacking);
   void hear();
-  void hear(const messages::SeamPiece& piece);
+  void hear(Peer& peer, const messages::SeamPiece& piece);
   void answer(Peer& peer, const messages::SeamPiece& question);
   void note_posted(Clock::time_point begun);
   void note_fetched(Peer& peer, Clock::time_point begun);
@@ -84,7 +101,7 @@ struct DdsSeams::Impl {
   Clock::time_point last_asked;  ///< whether others stand
   wire::SeamPiece sample;        // reused
 
-  // Of the DDS thread that takes what comes.
+  // The DDS thread that takes what comes uses these.
   std::mutex hearing;
   messages::Expected expected;
   wire::SeamPiece heard;  // reused
@@ -136,13 +153,15 @@ void DdsSeams::Impl::look_at_nodes() {
   }
 }
 
-/// Throws core::SeamsBroken when a region that is waited for is lost, or after a while any other, or when others stand.
-void DdsSeams::Impl::expect_alive(core::RegionId region, Clock::time_point begun) {
+/// Looks at the nodes while a parcel is waited for since `begun`. Throws core::SeamsBroken when a node is lost, or when
+/// others stand.
+void DdsSeams::Impl::look_around(Clock::time_point begun) {
+  core::Progress::mark();
+  participant.progress();
+  look_at_nodes();
+  if (const auto lost = find_lost())
+    throw core::SeamsBroken(fmt::format("region {} was lost in the middle of a step", core::value_of(*lost)));
   const auto now = Clock::now();
-  std::optional<core::RegionId> lost;
-  if (settings.is_lost(region)) lost = region;
-  if (!lost && now - begun > kLooks) lost = find_lost();
-  if (lost) throw core::SeamsBroken(fmt::format("region {} was lost in the middle of a step", core::value_of(*lost)));
   if (!settings.why_stand || now - std::max(begun, last_asked) < kAsksWhetherOthersStand) return;
   last_asked = now;
   // A node that only the others receive nothing from is lost to them, and they are not lost to it.
@@ -169,53 +188,41 @@ void DdsSeams::Impl::expect_same_step(core::RegionId from, const Peer& peer) con
 /// Waits until the next parcel of a region is whole. Asks for what has not come.
 void DdsSeams::Impl::wait_for(core::RegionId from, Peer& peer, std::unique_lock<std::mutex>& lock) {
   const auto begun = Clock::now();
-  auto silent_since = begun, next_look = begun + kLooks;
-  Clock::duration asks_after = kSilent;
-  int questions = 0;
+  Asking asking(begun);
+  auto next_look = begun + kLooks;
   std::uint64_t arrivals = peer.arrivals;
   bool is_named = false;
   while (!peer.arrived.take(peer.last)) {
     expect_same_step(from, peer);
     const auto now = Clock::now();
-    if (std::exchange(arrivals, peer.arrivals) != peer.arrivals) silent_since = now, asks_after = kSilent;
-    std::vector<std::uint32_t> lacking;
-    if (now >= silent_since + asks_after) {
-      const auto numbers = peer.arrived.lacking();
-      lacking.assign(numbers.begin(), numbers.end());
-      silent_since = now;
-      if (++questions > 1) asks_after = std::min(2 * asks_after, kLongestSilent);
-    }
-    if (!lacking.empty() || now >= next_look) {
+    if (std::exchange(arrivals, peer.arrivals) != peer.arrivals) asking.note_heard(now);
+    if (now >= asking.due()) {
+      asking.note_asked(now);
+      const std::vector<std::uint32_t> lacking = peer.arrived.lacking();
       lock.unlock();
-      if (!lacking.empty()) ask(from, peer, lacking);
-      if (now >= next_look) {
-        look_at_nodes();
-        expect_alive(from, begun);
-        core::Progress::mark();
-        participant.progress();
-        next_look = now + kLooks;
-      }
-      if (!is_named && now - begun > kLong) {
-        is_named = true;
+      ask(from, peer, lacking);
+      lock.lock();
+    } else if (now >= next_look) {
+      next_look = now + kLooks;
+      lock.unlock();
+      look_around(begun);
+      if (now - begun > kLong && !std::exchange(is_named, true)) {
         spdlog::warn("region {} waits for region {} in the middle of state {}", core::value_of(settings.region),
                      core::value_of(from), step);
       }
       lock.lock();
-      continue;  // it may have come
+    } else {
+      waits_for = from;
+      has_come.wait_until(lock, std::min(asking.due(), next_look));
+      waits_for.reset();
     }
-    waits_for = from;
-    has_come.wait_until(lock, std::min(silent_since + asks_after, next_look));
-    waits_for.reset();
   }
 }
 
 void DdsSeams::Impl::ask(core::RegionId from, Peer& peer, std::span<const std::uint32_t> lacking) {
   if (!peer.writer) make_writer(from);
   messages::encode(header_to(from, 0), settings.map_version, lacking, sample);
-  {
-    const std::lock_guard alone(peer.writing);
-    peer.writer->write(&sample);  // what is lost is asked again
-  }
+  peer.writer->write(&sample);  // what is lost is asked again
   const std::lock_guard lock(mutex);
   ++counters.questions;
 }
@@ -241,14 +248,12 @@ void DdsSeams::Impl::hear() {
     if (const auto* error = std::get_if<messages::WireError>(&decoded)) {
       reader->refuse_from(origin, *error);
     } else {
-      hear(std::get<messages::SeamPiece>(decoded));
+      hear(peer->second, std::get<messages::SeamPiece>(decoded));
     }
   }
 }
 
-void DdsSeams::Impl::hear(const messages::SeamPiece& piece) {
-  const core::RegionId from = piece.header.source;
-  Peer& peer = peers.at(from);
+void DdsSeams::Impl::hear(Peer& peer, const messages::SeamPiece& piece) {
   bool is_waited_for = false;
   {
     const std::lock_guard lock(mutex);
@@ -258,12 +263,12 @@ void DdsSeams::Impl::hear(const messages::SeamPiece& piece) {
     }
     ++peer.arrivals;
     peer.arrived.add(piece);
-    is_waited_for = waits_for == from;
+    is_waited_for = waits_for == piece.header.source;
   }
   if (is_waited_for) has_come.notify_one();
 }
 
-/// Who asks for what is still being computed gets no answer.
+/// Sends again what a region asks for. A region that asks for what is still being computed gets no answer.
 void DdsSeams::Impl::answer(Peer& peer, const messages::SeamPiece& question) {
   const bool is_of_this_step = question.header.generation == generation && question.header.step == step;
   const auto now = Clock::now();
@@ -273,7 +278,6 @@ void DdsSeams::Impl::answer(Peer& peer, const messages::SeamPiece& question) {
     ++counters.repeated;
     messages::encode(header_to(question.header.source, piece.number), settings.map_version, piece.octets, piece.goes_on,
                      answer_sample);
-    const std::lock_guard alone(peer.writing);
     peer.answers->write(&answer_sample);  // what is lost is asked for again
   });
 }
@@ -352,21 +356,17 @@ void DdsSeams::post(core::RegionId to, std::span<const std::byte> parcel) {
   Peer& peer = impl_->peers.at(to);
   if (!peer.writer) impl_->make_writer(to);
   const std::size_t most_B = peer.writer->largest_sample_B() - messages::empty_piece_B();
-  do {
-    const std::span<const std::byte> octets = parcel.first(std::min(most_B, parcel.size()));
-    parcel = parcel.subspan(octets.size());
+  messages::cut(parcel, most_B, [&](std::span<const std::byte> octets, bool goes_on) {
     std::uint32_t number = 0;
     {
       const std::lock_guard lock(impl_->mutex);
-      number = peer.posted.add(octets, !parcel.empty()).number;
-      ++impl_->counters.pieces;
+      number = peer.posted.add(octets, goes_on).number;
     }
-    messages::encode(impl_->header_to(to, number), impl_->settings.map_version, octets, !parcel.empty(), impl_->sample);
-    const std::lock_guard alone(peer.writing);
+    messages::encode(impl_->header_to(to, number), impl_->settings.map_version, octets, goes_on, impl_->sample);
     if (peer.writer->write(&impl_->sample) == WriteResult::kFailed) {
       throw core::SeamsBroken(fmt::format("region {} takes no parcels", core::value_of(to)));
     }
-  } while (!parcel.empty());
+  });
   impl_->note_posted(begun);
 }
 

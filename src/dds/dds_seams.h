@@ -40,7 +40,6 @@ struct ExchangeTimes {
 
 /// Since the beginning.
 struct SeamCounters {
-  std::uint64_t pieces = 0;     ///< that were posted
   std::uint64_t questions = 0;  ///< for pieces that had not come
   std::uint64_t repeated = 0;   ///< pieces that were sent again
 };

@@ -219,6 +219,7 @@ WriteResult Writer::write_parts(void* message, std::uint32_t message_B) {
 
 /// Writes a sample, a second time if need be.
 WriteResult Writer::write_in_two_tries(void* sample, eprosima::fastrtps::rtps::WriteParams& params) {
+  const std::lock_guard alone(writing_);
   const auto write = [&] {
     params.source_timestamp().from_ns(sent_.next(core::wall_clock_ns()));
     return writer_->write(sample, params);

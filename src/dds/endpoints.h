@@ -4,6 +4,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -48,7 +49,7 @@ inline EndpointSpec on(TopicId topic, const topics::Route& route = {}, std::opti
 enum class WriteResult : std::uint8_t { kSent, kSentAtSecondTry, kFailed };
 
 /// A DDS writer. QoS by profile `<topic>_writer`, or as the spec says. A writer with MANUAL_BY_TOPIC liveliness is kept
-/// alive by the domain's liveliness asserter. One thread at a time may write.
+/// alive by the domain's liveliness asserter. Several threads may write samples, and one of them messages in parts.
 class Writer {
  public:
   Writer(Domain& domain, const EndpointSpec& spec, Wakeup& wakeup);
@@ -97,6 +98,7 @@ class Writer {
   bool is_of_nodes_ = false;                        ///< its samples are messages between nodes
   bool goes_by_hub_ = false;                        ///< a hub passes its samples on
   LivelinessAsserter::Nanoseconds written_ns_ = 0;  ///< when the last sample was written
+  std::mutex writing_;                              ///< the times of samples have to rise with their numbers
   RisingTime sent_;
   std::int32_t unread_ = 0;  ///< calls of forget_acknowledged() since every reader had acknowledged everything
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;

@@ -27,11 +27,7 @@ std::string closing_line(const std::map<core::RegionId, messages::SeenStatus>& s
     hand_offs += status.hand_offs_out;
     late += status.late_collisions;
     missed += status.missed_collisions;
-    violations["speed"] += status.violations.speed;
-    violations["latency"] += status.violations.latency;
-    violations["frame"] += status.violations.frame;
-    violations["promise"] += status.violations.promise;
-    violations["span"] += status.violations.span;
+    for (const auto& [kind, count] : status.violations.by_kind()) violations[kind] += count;
   }
   if (unknown.size() == regions) {
     return fmt::format(

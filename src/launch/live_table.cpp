@@ -40,17 +40,13 @@ void add_row(std::vector<Column>& columns, const std::vector<std::string>& cells
   }
 }
 
-std::uint64_t broken_promises(const messages::Violations& v) {
-  return v.speed + v.latency + v.frame + v.promise + v.span;
-}
-
 void add_region(std::vector<Column>& columns, const messages::SeenStatus& seen) {
   const messages::Status& s = seen.status;
   const auto text = [](const auto& value) { return fmt::to_string(value); };
   const auto decimals = [](double value) { return fmt::format("{:.2f}", value); };
   add_row(columns, {text(core::value_of(s.region)), seen.lost ? "lost" : messages::name_of(s.state), text(s.step),
                     text(s.bodies), text(s.awake), text(s.foreign_auras), text(s.hand_offs_out), text(s.hand_offs_in),
-                    decimals(s.frame.p50_ms), decimals(s.frame.p99_ms), text(broken_promises(s.violations)),
+                    decimals(s.frame.p50_ms), decimals(s.frame.p99_ms), text(s.violations.total()),
                     decimals(s.real_time_factor), text(s.listens_to.size())});
 }
 
@@ -141,7 +137,7 @@ std::string live_table(const std::map<core::RegionId, messages::SeenStatus>& sta
     sums.bodies += seen.status.bodies;
     sums.sent += seen.status.hand_offs_out;
     sums.received += seen.status.hand_offs_in;
-    sums.broken += broken_promises(seen.status.violations);
+    sums.broken += seen.status.violations.total();
   }
   const auto text = [](std::uint64_t value) { return fmt::to_string(value); };
   add_row(columns, {"all", "", "", text(sums.bodies), "", "", text(sums.sent), text(sums.received), "", "",

@@ -1,6 +1,7 @@
 // Messages of topics node_status, region_map and run_control.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <optional>
@@ -46,6 +47,12 @@ struct Violations {
   std::uint64_t frame = 0;    ///< a frame took longer than tolerances.frame
   std::uint64_t promise = 0;  ///< a body left what its last aura promised
   std::uint64_t span = 0;     ///< a cluster or reach wider than the neighbours that were asked
+
+  /// Names and numbers of all kinds.
+  std::array<std::pair<const char*, std::uint64_t>, 5> by_kind() const {
+    return {{{"speed", speed}, {"latency", latency}, {"frame", frame}, {"promise", promise}, {"span", span}}};
+  }
+  std::uint64_t total() const { return speed + latency + frame + promise + span; }
 };
 
 /// Names one kept part: a region's part of the world in one state.

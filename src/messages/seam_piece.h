@@ -22,8 +22,8 @@ struct SeamPiece {
   SeamHeader header;
   bool goes_on = false;               ///< the next piece is of the same parcel
   std::span<const std::byte> octets;  ///< of the parcel, which is read in physics/
-  /// Of a question: numbers of pieces from destination to source that have not come, ascending. The last stands for all
-  /// after it, too.
+  /// A question lists the numbers of pieces from destination to source that have not come, ascending. The last stands
+  /// for all after it, too.
   std::span<const std::uint32_t> lacking;
 
   bool is_question() const { return header.number == 0; }

@@ -66,12 +66,12 @@ bool ArrivedPieces::take(std::vector<std::byte>& octets) {
   return true;
 }
 
-std::span<const std::uint32_t> ArrivedPieces::lacking() {
-  lacking_.clear();
-  for (std::size_t i = without_gaps_; i <= count_ && lacking_.size() < kMostLacking; ++i) {
-    if (i == count_ || !slots_[i].is_here) lacking_.push_back(static_cast<std::uint32_t>(i + 1));
+std::vector<std::uint32_t> ArrivedPieces::lacking() const {
+  std::vector<std::uint32_t> lacking;
+  for (std::size_t i = without_gaps_; i <= count_ && lacking.size() < kMostLacking; ++i) {
+    if (i == count_ || !slots_[i].is_here) lacking.push_back(static_cast<std::uint32_t>(i + 1));
   }
-  return lacking_;
+  return lacking;
 }
 
 std::optional<SeamHeader> ArrivedPieces::ahead() const {

@@ -3,6 +3,7 @@
 // the pieces of its step for that. Knows nothing of DDS.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -13,6 +14,17 @@
 #include "messages/seam_piece.h"
 
 namespace aurasim::messages {
+
+/// Calls visit(octets, goes_on) for each piece of at most `most_B` bytes that a parcel is cut into. An empty parcel has
+/// one.
+template <class Visit>
+void cut(std::span<const std::byte> parcel, std::size_t most_B, Visit&& visit) {
+  do {
+    const std::span<const std::byte> octets = parcel.first(std::min(most_B, parcel.size()));
+    parcel = parcel.subspan(octets.size());
+    visit(octets, !parcel.empty());
+  } while (!parcel.empty());
+}
 
 /// The pieces that one region has posted to another in its step.
 class PostedPieces {
@@ -61,7 +73,7 @@ class ArrivedPieces {
   bool take(std::vector<std::byte>& octets);
 
   /// Numbers of the pieces that have not come, as in SeamPiece::lacking.
-  std::span<const std::uint32_t> lacking();
+  std::vector<std::uint32_t> lacking() const;
   /// A piece of a later step, if one has come.
   std::optional<SeamHeader> ahead() const;
   /// Number of the next parcel in the step, from 1.
@@ -95,7 +107,6 @@ class ArrivedPieces {
   std::uint32_t taken_ = 0;       ///< parcels
   std::size_t size_B_ = 0;        ///< of pieces that are kept
   std::vector<Later> later_;      ///< pieces of later steps
-  std::vector<std::uint32_t> lacking_;
 };
 
 }  // namespace aurasim::messages

@@ -40,6 +40,12 @@ Json side(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
 Json durations_json(const messages::Durations& d) { return {{"p50", d.p50_ms}, {"p99", d.p99_ms}, {"max", d.max_ms}}; }
 
+Json violations_json(const messages::Violations& violations) {
+  Json counts = Json::object();
+  for (const auto& [kind, count] : violations.by_kind()) counts[kind] = count;
+  return counts;
+}
+
 Json listens_json(const messages::Status& status) {
   Json listens = Json::array();
   for (const core::Listened& who : status.listens_to) {
@@ -61,12 +67,7 @@ Json node_json(const messages::SeenStatus& seen, double hand_offs_per_s) {
           {"hand_offs_out", s.hand_offs_out},
           {"hand_offs_in", s.hand_offs_in},
           {"hand_offs_per_s", hand_offs_per_s},
-          {"violations",
-           {{"speed", s.violations.speed},
-            {"latency", s.violations.latency},
-            {"frame", s.violations.frame},
-            {"promise", s.violations.promise},
-            {"span", s.violations.span}}},
+          {"violations", violations_json(s.violations)},
           {"late", s.late_collisions},
           {"missed", s.missed_collisions},
           {"redos", s.redos},
@@ -201,10 +202,7 @@ std::string node_metrics(const RunStatus& status) {
       "# HELP aurasim_violations_total Warnings: limits and predictions that did not hold.\n# TYPE "
       "aurasim_violations_total counter\n";
   for (const auto& [region, seen] : status.nodes) {
-    const messages::Violations& v = seen.status.violations;
-    for (const auto& [kind, count] :
-         {std::pair{"speed", v.speed}, std::pair{"latency", v.latency}, std::pair{"frame", v.frame},
-          std::pair{"promise", v.promise}, std::pair{"span", v.span}}) {
+    for (const auto& [kind, count] : seen.status.violations.by_kind()) {
       text += fmt::format("aurasim_violations_total{{region=\"{}\",kind=\"{}\"}} {}\n", value_of(region), kind, count);
     }
   }

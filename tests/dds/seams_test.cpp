@@ -58,8 +58,8 @@ TEST(Seams, HaveWritersToNearRegionsFromTheBeginning) {
   EXPECT_EQ(middle.fetch(0), parcel_of(7));
 }
 
-/// What is posted to a region that is not there yet is lost, and posted again when that region asks. The other one
-/// computes meanwhile: a thread of DDS answers.
+/// A parcel to a region that is not there yet is lost, and sent again when that region asks. The sender computes
+/// meanwhile: a thread of DDS answers.
 TEST(Seams, AnswerWhoAsksWhileTheyCompute) {
   Coupled left(0, {});
   left.seams.begin(0, 1);

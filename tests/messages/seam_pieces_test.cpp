@@ -41,11 +41,9 @@ SeamPiece received(const Sent& piece) { return {piece.header, piece.goes_on, pie
 /// Cuts a parcel, and gives the pieces.
 std::vector<Sent> post(PostedPieces& posted, core::Step step, std::span<const std::byte> parcel) {
   std::vector<Sent> pieces;
-  do {
-    const auto octets = parcel.first(std::min(kPiece_B, parcel.size()));
-    parcel = parcel.subspan(octets.size());
-    pieces.push_back(sent(step, posted.add(octets, !parcel.empty())));
-  } while (!parcel.empty());
+  cut(parcel, kPiece_B, [&](std::span<const std::byte> octets, bool goes_on) {
+    pieces.push_back(sent(step, posted.add(octets, goes_on)));
+  });
   return pieces;
 }
 
