@@ -67,10 +67,23 @@ void ChangingPhase::change_world(const std::string& file) {
   begin_anew();
 }
 
-/// Changes to other regions. Bodies and orders stay; each body goes to the host that the new map wants.
+/// Changes to other regions. Bodies and orders stay; each body goes to the host that the new map wants. Where regions
+/// are coupled that is the owner of its block, and it goes there in the next step.
 void ChangingPhase::change_regions(const std::vector<core::Rectangle>& boxes) {
   settle_all();
   wait_for_all_nodes();
+  if (run_.launch.is_coupled()) {
+    const config::Launch launch = config::with_regions(run_.launch, boxes);
+    run_.endpoints.observers().use_map(launch.regions.version());
+    begin_regions(launch, run_.generation + 1);
+    spdlog::info("new regions after step {}", run_.node->current_step());
+  } else {
+    move_to_regions(boxes);
+  }
+}
+
+/// The same where regions are not coupled.
+void ChangingPhase::move_to_regions(const std::vector<core::Rectangle>& boxes) {
   const auto deadline = Clock::now() + kPatienceWithOthers;
   RegionChange change(run_.launch, boxes, run_.options.region, run_.generation);
   change.begin_census(run_.endpoints, *run_.node);
@@ -92,13 +105,18 @@ void ChangingPhase::change_regions(const std::vector<core::Rectangle>& boxes) {
   wait_for_all_nodes();
   run_.records.write_settling(moved);
   run_.status.note_moved(moved);
-  run_.launch = change.launch();
-  run_.status.use_regions(run_.launch);
-  run_.start.await(change.generation() + 1);
-  connect_for_change(neighbour_transport(run_.launch, run_.options.region));
-  run_.begin_changed_map();
+  begin_regions(change.launch(), change.generation() + 1);
   spdlog::info("new regions after step {}: {} bodies sent, {} taken in", run_.node->current_step(),
                moved.departures.size(), moved.arrivals.size());
+}
+
+/// Goes on with the regions of `launch`, in a new generation.
+void ChangingPhase::begin_regions(const config::Launch& launch, core::Generation generation) {
+  run_.launch = launch;
+  run_.status.use_regions(run_.launch);
+  run_.start.await(generation);
+  connect_for_change(neighbour_transport(run_.launch, run_.options.region));
+  run_.begin_changed_map();
 }
 
 /// Begins the changed world from its first state, in a new generation.

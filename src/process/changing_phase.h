@@ -24,6 +24,8 @@ class ChangingPhase {
   void change_scene(const std::string& name);
   void change_world(const std::string& file);
   void change_regions(const std::vector<core::Rectangle>& boxes);
+  void move_to_regions(const std::vector<core::Rectangle>& boxes);
+  void begin_regions(const config::Launch& launch, core::Generation generation);
   void begin_anew();
   void wait_for_all_nodes();
   void settle_all();

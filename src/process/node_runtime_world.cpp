@@ -83,7 +83,6 @@ void NodeRuntime::begin_changed_map() {
   const node::StepReport& report = node->take_map(setup.protocol, launch.regions, transport(), transport().seams());
   endpoints.observers().after_step(*node, report);
   record(node->confirmed());
-  schedule.go_on_after(node->current_step(), *start.start(), node::read_clocks());
   publish_map(generation, node->current_step());
 }
 

@@ -29,9 +29,8 @@ void RegionChange::receive_census(std::chrono::nanoseconds time_out) {
   for (const core::Replica& replica : reader_->take()) census_->accept(replica);
 }
 
-/// Coupled nodes hand bodies over at the beginning of the next step, to the owners of their blocks.
 void RegionChange::end_census(const node::Node& node) {
-  if (!launch_.is_coupled()) departures_ = node::find_new_hosts(settings_, census_->take(), node);
+  departures_ = node::find_new_hosts(settings_, census_->take(), node);
   reader_.reset();
 }
 

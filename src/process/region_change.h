@@ -1,5 +1,6 @@
-// The change of a run to other regions, step by step: all nodes publish the bodies that they host, compute the same new
-// hosts, and send each body straight to its new host. Sends and receives, and never waits: the caller polls.
+// The change of a run without coupled regions to other regions, step by step: all nodes publish the bodies that they
+// host, compute the same new hosts, and send each body straight to its new host. Sends and receives, and never waits:
+// the caller polls.
 #pragma once
 
 #include <chrono>

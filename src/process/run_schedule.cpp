@@ -32,10 +32,6 @@ void RunSchedule::go_back(const messages::RunCommand& restore, bool keeps_pause,
   hurry_until_ = 0;
 }
 
-void RunSchedule::go_on_after(core::Step step, const messages::RunCommand& start, const node::Instant& now) {
-  pacer_.set_epoch(step + 1, start.epoch_ns, start.clock_ahead, now);
-}
-
 void RunSchedule::apply(const messages::RunCommand& command, const node::Instant& now) {
   using Kind = messages::RunCommandKind;
   switch (command.kind) {

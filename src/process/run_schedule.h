@@ -29,8 +29,6 @@ class RunSchedule {
   /// The run goes back to the state that `restore` names. `keeps_pause`: this node has sent the restore, and repeats
   /// the pause to the others (commands_to_repeat). `first`: state that the run began with.
   void go_back(const messages::RunCommand& restore, bool keeps_pause, core::Step first, const node::Instant& now);
-  /// The run goes on after state `step` with the time that `start` names.
-  void go_on_after(core::Step step, const messages::RunCommand& start, const node::Instant& now);
 
   /// Executes a command of a kind named above. Commands of other kinds do nothing.
   void apply(const messages::RunCommand& command, const node::Instant& now);
