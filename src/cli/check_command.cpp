@@ -6,6 +6,7 @@
 #include "cli/commands.h"
 #include "config/launch.h"
 #include "config/shipped_files.h"
+#include "core/seam_tree.h"
 #include "host/long_work.h"
 #include "overseer/web_setup.h"
 #include "process/exchange_choice.h"
@@ -13,6 +14,14 @@
 #include "setup/scene_warnings.h"
 
 namespace aurasim::cli {
+namespace {
+
+std::string who_listens_when_coupled(std::size_t regions) {
+  return core::SeamTree(regions).is_needed() ? "each listens to those near it, and along a tree"
+                                             : "all listen to each other";
+}
+
+}  // namespace
 
 void add_check(CLI::App& program, command_line::Action& action) {
   CLI::App* command = program.add_subcommand("check", "validate a launch file and its scene");
@@ -26,7 +35,7 @@ void add_check(CLI::App& program, command_line::Action& action) {
       fmt::print("{}: scene '{}', {} bodies and {} injectors, {} regions, lookahead {}, {}\n", files->file,
                  launch.scene.name, launch.scene.bodies.size(), launch.scene.injectors.size(), launch.regions.size(),
                  launch.lookahead(),
-                 launch.is_coupled() ? std::string("all listen to each other")
+                 launch.is_coupled() ? who_listens_when_coupled(launch.regions.size())
                                      : fmt::format("listening distance {:.2f} m", setup::listening_distance_m(launch)));
       if (launch.regions.size() > 1 && launch.exchange != config::Exchange::kAura) {
         fmt::print(

@@ -126,9 +126,10 @@ std::string problem_of_auras(const Launch& launch) {
       top_speed_aura(launch).rules().instants(), largest_radius_m(launch.scene));
 }
 
-/// Coupled regions all listen to each other, so what a node costs grows with their number: with 16 a step costs each
-/// node twice what auras cost it, with 36 four times.
-constexpr std::size_t kMostCoupledByAuto = 16;
+/// The more processes share the cores, the more the several exchanges of a step cost. In a world without heaps a step
+/// of 36 coupled nodes on two cores takes 1.2 times what it takes with auras, and one of 64 nodes twice
+/// (docs/decisions/0064-along-a-tree.md).
+constexpr std::size_t kMostCoupledByAuto = 36;
 
 /// Where `exchange: auto` can mean only one of the two, no node has to measure anything.
 void settle_auto(Launch& launch) {
@@ -145,7 +146,7 @@ void settle_auto(Launch& launch) {
   } else if (launch.regions.size() > kMostCoupledByAuto) {
     launch.exchange = Exchange::kAura;
     launch.why_exchange = fmt::format(
-        "there are {} regions, more than the {} that it couples, as coupled regions all listen to each other",
+        "there are {} regions, more than the {} that it couples, as each step waits for all of them several times",
         launch.regions.size(), kMostCoupledByAuto);
   }
 }

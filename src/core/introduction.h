@@ -7,7 +7,8 @@
 
 namespace aurasim::core {
 
-/// Two regions that are to listen to each other, a < b (core/introductions.h).
+/// Two regions that are to listen to each other, a < b (core/introductions.h). Where regions are coupled: two that are
+/// to exchange parcels in the next step (core/seam_partners.h).
 struct Introduction {
   RegionId a{};
   RegionId b{};

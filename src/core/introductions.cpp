@@ -118,7 +118,7 @@ const std::vector<Introduction>& Introducer::look(const ForeignBodies& foreign, 
     const double reach = reach_of_regions_m(aura_, body.path, others_top_speed_m_s);
     const double reach_of_pairs = reach_of_pairs_m(aura_, body.path);
     add_to(guests_, aura_, vicinity_.home(), body.host, p, reach_of_pairs);
-    if (at_home && reach <= vicinity_.neighbour_distance_m) continue;
+    if (at_home && reach <= vicinity_.nearness.distance_m) continue;
     for (std::uint32_t q = 0; q < vicinity_.map.size(); ++q) {
       if (vicinity_.map.distance(RegionId{q}, p) <= reach) introduce(body.host, RegionId{q});
     }

@@ -44,30 +44,4 @@ std::vector<Order> OrderLog::take_news() { return std::exchange(news_, {}); }
 
 std::vector<Order> OrderLog::take_to_publish() { return std::exchange(to_publish_, {}); }
 
-int hops_across(const RegionMap& map, double neighbour_distance_m) {
-  std::vector<std::vector<RegionId>> neighbours;
-  for (std::uint32_t r = 0; r < map.size(); ++r) {
-    neighbours.push_back(map.neighbours(RegionId{r}, neighbour_distance_m));
-  }
-  int most = 0;
-  for (std::uint32_t start = 0; start < map.size(); ++start) {
-    std::vector<int> hops(map.size(), -1);
-    std::vector<RegionId> wave = {RegionId{start}};
-    hops[start] = 0;
-    for (int hop = 1; !wave.empty(); ++hop) {
-      std::vector<RegionId> next;
-      for (const RegionId region : wave) {
-        for (const RegionId neighbour : neighbours[value_of(region)]) {
-          if (hops[value_of(neighbour)] >= 0) continue;
-          hops[value_of(neighbour)] = hop;
-          next.push_back(neighbour);
-        }
-      }
-      wave = std::move(next);
-    }
-    most = std::max(most, *std::max_element(hops.begin(), hops.end()));
-  }
-  return most;
-}
-
 }  // namespace aurasim::core

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "core/order.h"
-#include "core/region_map.h"
 
 namespace aurasim::core {
 
@@ -43,8 +42,5 @@ class OrderLog {
   std::vector<Order> news_;
   std::vector<Order> to_publish_;
 };
-
-/// Largest number of hops between two regions: after so many passes from neighbour to neighbour all have a message.
-int hops_across(const RegionMap& map, double neighbour_distance_m);
 
 }  // namespace aurasim::core

@@ -11,8 +11,16 @@
 namespace aurasim::core {
 namespace {
 
+Nearness nearness_of(const ProtocolSettings& settings) { return {settings.neighbour_distance_m, settings.owners}; }
+
+/// States in which an order, or what leads to one, reaches all nodes, at one hop a state. Where regions are coupled
+/// only orders matter, which all come from region 0.
+int hops_of_orders(const ProtocolSettings& settings, std::span<const std::vector<RegionId>> near) {
+  return settings.owners != nullptr ? hops_from(RegionId{0}, near) : hops_across(near);
+}
+
 Vicinity vicinity_of(const ProtocolSettings& settings, const RegionMap& map) {
-  Vicinity vicinity(map, settings.self, settings.neighbour_distance_m);
+  Vicinity vicinity(map, settings.self, nearness_of(settings));
   for (const Listened& related : settings.related) vicinity.listen_to(related.region);
   return vicinity;
 }
@@ -20,6 +28,10 @@ Vicinity vicinity_of(const ProtocolSettings& settings, const RegionMap& map) {
 }  // namespace
 
 Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const ClearanceQuery& clearance)
+    : Protocol(settings, map, clearance, all_near(map, nearness_of(settings))) {}
+
+Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const ClearanceQuery& clearance,
+                   std::span<const std::vector<RegionId>> near)
     : settings_(settings),
       vicinity_(vicinity_of(settings, map)),
       map_version_(map.version()),
@@ -30,13 +42,13 @@ Protocol::Protocol(const ProtocolSettings& settings, const RegionMap& map, const
       matching_(*aura_, vicinity_, settings_.together),
       projection_(*aura_, vicinity_),
       orders_(settings.last_order),
-      hops_across_(hops_across(map, settings.neighbour_distance_m)),
+      hops_of_orders_(hops_of_orders(settings, near)),
       listening_(vicinity_, intake_, settings.aura.lookahead, settings.start, settings.related,
                  settings.listening_ends && settings.sync != SyncMode::kFreeRunning),
       introducer_(*aura_, vicinity_),
       gathers_(settings.redo > 0),
       check_(*aura_, vicinity_, settings.start),
-      standing_(hops_across_, settings.aura.lookahead) {
+      standing_(hops_across(near), settings.aura.lookahead) {
   if (settings.aura.redo) intake_.on_arrival([this](const Neighbour& neighbour) { check_.take(neighbour); });
 }
 
@@ -84,7 +96,7 @@ const Changes& Protocol::receive(Step n, Joining joining) {
   if (settings_.sync != SyncMode::kFreeRunning) {  // in free-running mode regions agree on no state
     std::vector<Neighbour::Introduced> introduced = intake_.take_introductions();
     for (const Introduction& own : outbox_.aura.introductions) introduced.push_back({n - 1, own, vicinity_.self});
-    listening_.receive(introduced);
+    if (settings_.owners == nullptr) listening_.receive(introduced);
     for (const Neighbour::Introduced& one : introduced) {
       if (one.stamp == n - 1 && one.by != vicinity_.self) changes_.introductions.push_back(one.pair);
     }

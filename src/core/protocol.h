@@ -19,6 +19,7 @@
 #include "core/introductions.h"
 #include "core/listening.h"
 #include "core/messages.h"
+#include "core/nearness.h"
 #include "core/order_log.h"
 #include "core/projection.h"
 #include "core/redo.h"
@@ -36,13 +37,14 @@ struct ProtocolSettings {
   std::uint32_t redo = 0;  ///< how often this generation has been put back
   SyncMode sync = SyncMode::kBounded;
   AuraRules aura;
-  double neighbour_distance_m = 0;     ///< regions at most this far apart listen to each other
-  Step start = 0;                      ///< the first state that is passed to observe()
-  std::uint64_t last_order = 0;        ///< orders up to this sequence have been received
-  Step resend_after_steps = 120;       ///< an unacknowledged hand-off is sent again every so often
-  std::vector<TogetherPair> together;  ///< a < b, ascending
-  std::vector<Listened> related;       ///< regions, besides those near us, that listen from the start
-  bool listening_ends = true;          ///< false: regions that have been introduced listen to each other for ever
+  double neighbour_distance_m = 0;      ///< regions at most this far apart listen to each other
+  const BlockOwners* owners = nullptr;  ///< if regions are coupled; has to outlive the protocol
+  Step start = 0;                       ///< the first state that is passed to observe()
+  std::uint64_t last_order = 0;         ///< orders up to this sequence have been received
+  Step resend_after_steps = 120;        ///< an unacknowledged hand-off is sent again every so often
+  std::vector<TogetherPair> together;   ///< a < b, ascending
+  std::vector<Listened> related;        ///< regions, besides those near us, that listen from the start
+  bool listening_ends = true;           ///< false: regions that have been introduced listen to each other for ever
 };
 
 struct Changes {
@@ -177,8 +179,8 @@ class Protocol {
   }
   /// Raises an alarm: state `step` was computed with a static at the wrong place.
   void doubt(Step step) { alarms_.raise(step, kNobody, kNobodyElse); }
-  /// Number of states that a message needs at most to reach every node.
-  Step round() const { return hops_across_ * aura_->rules().lookahead; }
+  /// Number of states that a message needs at most to reach every node. Where regions are coupled: an order.
+  Step round() const { return hops_of_orders_ * aura_->rules().lookahead; }
   /// The state to pass to the next Protocol after the redo of this order.
   Continuation continuation(const Order& redo) const;
 
@@ -205,6 +207,8 @@ class Protocol {
   std::size_t largest_cluster() const { return largest_cluster_; }
 
  private:
+  Protocol(const ProtocolSettings& settings, const RegionMap& map, const ClearanceQuery& clearance,
+           std::span<const std::vector<RegionId>> near);
   void take_if_newer(Adoption& adoption);
   void let_go_of_what_others_own();
   void let_go(BodyId id);
@@ -237,7 +241,7 @@ class Protocol {
   InterestMatching matching_;
   Projection projection_;
   OrderLog orders_;
-  int hops_across_;
+  int hops_of_orders_;
   Listening listening_;
   Introducer introducer_;
   bool alarms_given_up_ = false;

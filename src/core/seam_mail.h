@@ -19,8 +19,11 @@ class SeamMail {
  public:
   virtual ~SeamMail() = default;
 
-  /// Begins a step, which computes state `step`. Parcels that were posted for earlier ones are dropped.
+  /// Begins a step, which computes state `step`. Parcels for the step before can still be
+  /// fetched by others, and those for earlier ones are dropped.
   virtual void begin(Generation, Step) {}
+  /// What has been posted and fetched since begin() was no exchange in the middle of the step, but before it.
+  virtual void begin_exchanges() {}
   /// Posts a parcel. Parcels to one region arrive in the order in which they were posted.
   virtual void post(RegionId to, std::span<const std::byte> parcel) = 0;
   /// Waits for the next parcel from a region. Valid until the next call for that region. Throws SeamsBroken if it will

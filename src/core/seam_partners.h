@@ -1,6 +1,7 @@
 // Which coupled regions exchange parcels in a step (docs/design.md, "Coupled regions"). Regions near each other always
 // do. Where a body may get to regions beyond, or may form chains of contacts over several, its host says so in the
-// batch of the state before. All nodes have all batches, so all know the same.
+// batch of the state before. All nodes come to know what all have said before they begin the step
+// (node/seam_gathering.h).
 #pragma once
 
 #include <cstdint>

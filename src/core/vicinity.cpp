@@ -4,11 +4,8 @@
 
 namespace aurasim::core {
 
-Vicinity::Vicinity(const RegionMap& region_map, RegionId region, double distance_m)
-    : map(region_map),
-      self(region),
-      neighbour_distance_m(distance_m),
-      neighbours(region_map.neighbours(region, distance_m)) {}
+Vicinity::Vicinity(const RegionMap& region_map, RegionId region, const Nearness& which)
+    : map(region_map), self(region), nearness(which), neighbours(regions_near(region_map, which, region)) {}
 
 void Vicinity::listen_to(RegionId id) {
   const auto place = std::lower_bound(neighbours.begin(), neighbours.end(), id);
@@ -39,9 +36,7 @@ bool Vicinity::deep_inside(const Vec3& p, double distance_m) const {
 
 bool Vicinity::is_neighbour(RegionId id) const { return std::binary_search(neighbours.begin(), neighbours.end(), id); }
 
-bool Vicinity::are_near(RegionId a, RegionId b) const {
-  return map.region(a).distance(map.region(b)) <= neighbour_distance_m;
-}
+bool Vicinity::are_near(RegionId a, RegionId b) const { return core::are_near(map, nearness, a, b); }
 
 Audience Vicinity::bit_of(RegionId id) const { return is_neighbour(id) ? audience_of(id) : kNobodyListens; }
 

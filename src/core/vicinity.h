@@ -5,16 +5,18 @@
 #include <vector>
 
 #include "core/audience.h"
+#include "core/nearness.h"
 #include "core/region_map.h"
 
 namespace aurasim::core {
 
 struct Vicinity {
-  Vicinity(const RegionMap& map, RegionId self, double neighbour_distance_m);
+  /// `map` and Nearness::owners have to outlive it.
+  Vicinity(const RegionMap& map, RegionId self, const Nearness& nearness);
 
   const RegionMap& map;
   RegionId self;
-  double neighbour_distance_m;
+  Nearness nearness;
   std::vector<RegionId> neighbours;  ///< ascending
 
   /// Makes region `id` a neighbour.

@@ -37,6 +37,13 @@ constexpr std::size_t kMostOfAnAnswer_B = std::size_t{256} << 10;
 
 double seconds_since(Clock::time_point begun) { return std::chrono::duration<double>(Clock::now() - begun).count(); }
 
+struct StepName {
+  core::Generation generation = 0;
+  core::Step step = 0;
+
+  bool operator==(const StepName&) const = default;
+};
+
 /// When a region that is waited for is asked.
 class Asking {
  public:
@@ -62,9 +69,9 @@ struct Peer {
   std::vector<std::byte> last;   ///< parcel
 
   // Guarded by Impl::mutex.
-  Writer* answers = nullptr;          ///< `writer`, once it is there
-  std::optional<ProcessPrefix> node;  ///< the region's, if known
-  messages::PostedPieces posted;
+  Writer* answers = nullptr;                     ///< `writer`, once it is there
+  std::optional<ProcessPrefix> node;             ///< the region's, if known
+  messages::PostedPieces posted, posted_before;  ///< in this step, and in the one before
   messages::ArrivedPieces arrived;
   std::uint64_t arrivals = 0;  ///< pieces and their repetitions
   Clock::time_point answered;
@@ -88,8 +95,8 @@ struct DdsSeams::Impl {
   void note_posted(Clock::time_point begun);
   void note_fetched(Peer& peer, Clock::time_point begun);
   void end_exchange();
-  messages::SeamHeader header_to(core::RegionId to, std::uint32_t number) const {
-    return {settings.region, to, generation, step, number};
+  messages::SeamHeader header_to(core::RegionId to, const StepName& of, std::uint32_t number) const {
+    return {settings.region, to, of.generation, of.step, number};
   }
 
   Participant& participant;
@@ -109,8 +116,7 @@ struct DdsSeams::Impl {
   mutable std::mutex mutex;
   std::condition_variable has_come;
   std::optional<core::RegionId> waits_for;
-  core::Generation generation = 0;
-  core::Step step = 0;
+  StepName step, step_before;
   wire::SeamPiece answer_sample;  // reused
   SeamCounters counters;
 
@@ -182,7 +188,7 @@ void DdsSeams::Impl::expect_same_step(core::RegionId from, const Peer& peer) con
   if (!ahead) return;
   throw core::SeamsBroken(
       fmt::format("region {} is in another step: piece {} of state {} came instead of parcel {} of {}",
-                  core::value_of(from), ahead->number, ahead->step, peer.arrived.next_parcel(), step));
+                  core::value_of(from), ahead->number, ahead->step, peer.arrived.next_parcel(), step.step));
 }
 
 /// Waits until the next parcel of a region is whole. Asks for what has not come.
@@ -208,7 +214,7 @@ void DdsSeams::Impl::wait_for(core::RegionId from, Peer& peer, std::unique_lock<
       look_around(begun);
       if (now - begun > kLong && !std::exchange(is_named, true)) {
         spdlog::warn("region {} waits for region {} in the middle of state {}", core::value_of(settings.region),
-                     core::value_of(from), step);
+                     core::value_of(from), step.step);
       }
       lock.lock();
     } else {
@@ -221,7 +227,7 @@ void DdsSeams::Impl::wait_for(core::RegionId from, Peer& peer, std::unique_lock<
 
 void DdsSeams::Impl::ask(core::RegionId from, Peer& peer, std::span<const std::uint32_t> lacking) {
   if (!peer.writer) make_writer(from);
-  messages::encode(header_to(from, 0), settings.map_version, lacking, sample);
+  messages::encode(header_to(from, step, 0), settings.map_version, lacking, sample);
   peer.writer->write(&sample);  // what is lost is asked again
   const std::lock_guard lock(mutex);
   ++counters.questions;
@@ -270,14 +276,16 @@ void DdsSeams::Impl::hear(Peer& peer, const messages::SeamPiece& piece) {
 
 /// Sends again what a region asks for. A region that asks for what is still being computed gets no answer.
 void DdsSeams::Impl::answer(Peer& peer, const messages::SeamPiece& question) {
-  const bool is_of_this_step = question.header.generation == generation && question.header.step == step;
+  const StepName asked{question.header.generation, question.header.step};
   const auto now = Clock::now();
-  if (!is_of_this_step || peer.answers == nullptr || now < peer.answered + kBetweenAnswers) return;
-  peer.posted.answer(question.lacking, kMostOfAnAnswer_B, [&](const messages::PostedPieces::Piece& piece) {
+  if ((asked != step && asked != step_before) || peer.answers == nullptr || now < peer.answered + kBetweenAnswers)
+    return;
+  const messages::PostedPieces& posted = asked == step ? peer.posted : peer.posted_before;
+  posted.answer(question.lacking, kMostOfAnAnswer_B, [&](const messages::PostedPieces::Piece& piece) {
     peer.answered = now;
     ++counters.repeated;
-    messages::encode(header_to(question.header.source, piece.number), settings.map_version, piece.octets, piece.goes_on,
-                     answer_sample);
+    messages::encode(header_to(question.header.source, asked, piece.number), settings.map_version, piece.octets,
+                     piece.goes_on, answer_sample);
     peer.answers->write(&answer_sample);  // what is lost is asked for again
   });
 }
@@ -338,17 +346,21 @@ std::vector<std::string> DdsSeams::unmatched(core::RegionId region) const {
 
 void DdsSeams::begin(core::Generation generation, core::Step step) {
   impl_->look_at_nodes();
-  impl_->times.seconds.clear();
-  impl_->exchange_s = 0;
-  impl_->has_fetched = false;
+  begin_exchanges();
   const std::lock_guard lock(impl_->mutex);
-  impl_->generation = generation;
-  impl_->step = step;
+  impl_->step_before = std::exchange(impl_->step, {generation, step});
   for (auto& [region, peer] : impl_->peers) {
-    peer.waited_s = 0;
+    std::swap(peer.posted, peer.posted_before);
     peer.posted.begin();
     peer.arrived.begin(generation, step);
   }
+}
+
+void DdsSeams::begin_exchanges() {
+  impl_->times.seconds.clear();
+  impl_->exchange_s = 0;
+  impl_->has_fetched = false;
+  for (auto& [region, peer] : impl_->peers) peer.waited_s = 0;
 }
 
 void DdsSeams::post(core::RegionId to, std::span<const std::byte> parcel) {
@@ -362,7 +374,8 @@ void DdsSeams::post(core::RegionId to, std::span<const std::byte> parcel) {
       const std::lock_guard lock(impl_->mutex);
       number = peer.posted.add(octets, goes_on).number;
     }
-    messages::encode(impl_->header_to(to, number), impl_->settings.map_version, octets, goes_on, impl_->sample);
+    messages::encode(impl_->header_to(to, impl_->step, number), impl_->settings.map_version, octets, goes_on,
+                     impl_->sample);
     if (peer.writer->write(&impl_->sample) == WriteResult::kFailed) {
       throw core::SeamsBroken(fmt::format("region {} takes no parcels", core::value_of(to)));
     }

@@ -17,7 +17,7 @@ namespace aurasim::dds {
 struct SeamSettings {
   core::RegionId region{};
   std::uint32_t region_count = 0;  ///< all others are peers
-  /// Peers that parcels go to in every step. They have writers from the beginning, at both ends.
+  /// Peers that parcels go to in most steps. They have writers from the beginning, at both ends.
   std::vector<core::RegionId> near;
   std::uint64_t map_version = 0;
   core::Generation life = 0;  ///< see TransportSettings
@@ -60,6 +60,7 @@ class DdsSeams final : public core::SeamMail {
   SeamCounters counters() const;
 
   void begin(core::Generation generation, core::Step step) override;
+  void begin_exchanges() override;
   /// The first parcel to a region that is not near makes the writer. Throws core::SeamsBroken if it cannot be sent.
   void post(core::RegionId to, std::span<const std::byte> parcel) override;
   /// Throws core::SeamsBroken once the region's node is lost, or nobody ends the step.

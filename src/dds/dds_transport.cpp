@@ -129,7 +129,7 @@ DdsTransport::Impl::Impl(Participant& participant_in, const TransportSettings& s
   if (!settings.coupled) return;
   const auto node_of = [this](RegionId region) {
     const Link* const link = links.find(region);
-    return link == nullptr ? std::nullopt : links.node_of(*link);
+    return link == nullptr ? participant.domain().speakers().of(region) : links.node_of(*link);
   };
   seams.emplace(participant, SeamSettings{.region = settings.region,
                                           .region_count = settings.region_count,

@@ -11,10 +11,12 @@
 namespace aurasim::lab {
 namespace {
 
-std::vector<std::vector<core::RegionId>> listeners(const core::RegionMap& map, double distance_m) {
-  std::vector<std::vector<core::RegionId>> all;
-  for (std::uint32_t r = 0; r < map.size(); ++r) all.push_back(map.neighbours(core::RegionId{r}, distance_m));
-  return all;
+/// By region: those that listen to it from the start.
+std::vector<std::vector<core::RegionId>> listeners(const core::Scene& scene, const core::RegionMap& map,
+                                                   const ClusterRules& rules) {
+  std::optional<core::BlockOwners> owners;
+  if (rules.coupled) owners.emplace(physics::block_owners(map, scene, node_setup(rules).physics));
+  return core::all_near(map, {rules.neighbour_distance_m, owners ? &*owners : nullptr});
 }
 
 /// Keeps freed memory in the process; to be called once. Each cluster makes and drops worlds of a few MB. Memory given
@@ -44,7 +46,7 @@ VirtualCluster::VirtualCluster(const core::Scene& scene, const core::RegionMap& 
                                const core::WorldCut* world, node::Recorded recorded)
     : rules_(rules),
       map_(map),
-      network_(listeners(map, rules.neighbour_distance_m), rules.network, rules.seed),
+      network_(listeners(scene, map, rules), rules.network, rules.seed),
       seams_(map.size()),
       random_(rules.seed * 0x9E3779B97F4A7C15ull + 1) {
   [[maybe_unused]] static const bool kept = keep_freed_memory();

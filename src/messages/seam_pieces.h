@@ -26,7 +26,7 @@ void cut(std::span<const std::byte> parcel, std::size_t most_B, Visit&& visit) {
   } while (!parcel.empty());
 }
 
-/// The pieces that one region has posted to another in its step.
+/// The pieces that one region has posted to another in a step.
 class PostedPieces {
  public:
   struct Piece {

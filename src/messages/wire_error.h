@@ -13,7 +13,7 @@
 namespace aurasim::messages {
 
 /// The number that every message carries. Changes with any change of idl/, and of which messages nodes wait for.
-inline constexpr std::uint16_t kProtocolVersion = 25;
+inline constexpr std::uint16_t kProtocolVersion = 26;
 
 /// Bodies, manifolds, ... in one message; more are refused.
 inline constexpr std::size_t kMaxRows = 1'000'000;

@@ -6,7 +6,9 @@
 
 #include "core/horizon.h"
 #include "core/progress.h"
+#include "core/seam_tree.h"
 #include "core/united.h"
+#include "node/seam_gathering.h"
 #include "node/timed.h"
 #include "physics/clearance.h"
 #include "physics/state_hash.h"
@@ -54,8 +56,8 @@ Node::Node(const NodeSetup& setup, const core::Scene& scene, const core::RegionM
   world_.controls().use(setup.control);
   for (const core::Setpoints& recorded : setup_.recorded) world_.controls().recall(recorded);
   expect_recorded_moves();
-  protocol_.emplace(setup.protocol, map, *clearance_);
-  if (setup.seams != nullptr) couple();
+  if (setup_.seams != nullptr) couple();
+  protocol_.emplace(setup_.protocol, map, *clearance_);
 }
 
 /// Announces the bodies that appear `birth_notice` steps after `state`; those of orders appear in the state that the
@@ -144,8 +146,8 @@ void Node::compute_step() {
   {
     const Timed timed(report_.durations.protocol_s, setup_.clock);
     changes = &protocol_->receive(n);
-    if (partners_) partners_->begin(changes->introductions);
   }
+  if (partners_) meet_partners(n, changes->introductions);
   {
     const Timed timed(report_.durations.physics_s, setup_.clock);
     for (const core::Order& order : changes->orders) execute(order);
@@ -153,7 +155,7 @@ void Node::compute_step() {
     apply(*changes);
     announce_births(n);
     core::Progress::mark();
-    compute_state(n);
+    compute_state();
     core::Progress::mark();
     if (owners_) note_moved();
     note_removals();
@@ -163,10 +165,24 @@ void Node::compute_step() {
   finish_state();
 }
 
+/// Where regions are coupled, finds out with which ones this node exchanges parcels in the step. `introductions`: what
+/// the regions that this one listens to have said, and what it has said.
+void Node::meet_partners(core::Step n, std::span<const core::Introduction> introductions) {
+  setup_.seams->begin(setup_.protocol.generation, n);
+  if (!core::SeamTree(owners_->size()).is_needed()) return partners_->begin(introductions);
+  const Timed timed(report_.durations.gathering_s, setup_.clock);
+  try {
+    partners_->begin(gather_pairs(*setup_.seams, region(), owners_->size(), introductions));
+  } catch (const core::SeamsBroken&) {
+    is_broken_ = true;
+    throw;
+  }
+  setup_.seams->begin_exchanges();
+}
+
 /// Where regions are coupled, another one may be lost in the middle of the state. Then this node has no state until the
 /// run goes back.
-void Node::compute_state(core::Step n) {
-  if (owners_) setup_.seams->begin(setup_.protocol.generation, n);
+void Node::compute_state() {
   try {
     world_.step();
   } catch (const core::SeamsBroken&) {

@@ -179,7 +179,8 @@ class Node {
   void compute_and_keep();
   void take_mail();
   void compute_step();
-  void compute_state(core::Step n);
+  void meet_partners(core::Step n, std::span<const core::Introduction> introductions);
+  void compute_state();
   void apply(const core::Changes& changes);
   void adopt(std::span<const core::Adoption* const> adoptions);
   void announce_births(core::Step state);

@@ -68,9 +68,9 @@ const StepReport& Node::take_map(const core::ProtocolSettings& settings, const c
   map_ = &map;
   transport_ = &transport;
   inbox_.clear();
-  protocol_.emplace(setup_.protocol, map, *clearance_);
   setup_.seams = seams;
   if (seams != nullptr) couple();  // blocks have other owners, to which bodies go in the next step
+  protocol_.emplace(setup_.protocol, map, *clearance_);
   begin_state(Recorded::kYes);
   take_cut();
   hold();
@@ -79,6 +79,7 @@ const StepReport& Node::take_map(const core::ProtocolSettings& settings, const c
 
 void Node::couple() {
   owners_.emplace(physics::block_owners(*map_, scene(), setup_.physics));
+  setup_.protocol.owners = &*owners_;
   partners_.emplace(*owners_);
   world_.couple({region(), &*owners_, setup_.seams, &*partners_});
 }

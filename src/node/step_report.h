@@ -69,6 +69,7 @@ struct Durations {
   double transport_s = 0;  ///< take, decode, encode, send
   double watch_s = 0;      ///< late and missed collisions, and counts; only the report needs them
   double cut_s = 0;        ///< keeping the state, to go back to it or to save it
+  double gathering_s = 0;  ///< waiting until all coupled regions have ended the state before
   double hash_s = 0;       ///< hashing the state. Hashes of states made up for late bodies count as physics
 };
 

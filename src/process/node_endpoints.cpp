@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "core/nearness.h"
+#include "core/seam_tree.h"
 #include "host/heartbeat.h"
 #include "physics/coupling.h"
 #include "setup/guard_log.h"
@@ -40,15 +42,16 @@ dds::Settings settings_of_node(const config::Launch& launch, const NodeOptions& 
   return settings;
 }
 
-/// Coupled regions that exchange parcels with `region` in every step.
-std::vector<core::RegionId> regions_near(const config::Launch& launch, core::RegionId region) {
-  const core::BlockOwners owners = physics::block_owners(launch.regions, launch.scene, setup::physics_settings(launch));
-  std::vector<core::RegionId> near;
+/// Coupled regions that post parcels to `region` in most steps.
+std::vector<core::RegionId> frequent_partners(const core::BlockOwners& owners, core::RegionId region) {
+  const core::SeamTree tree(owners.size());
+  std::vector<core::RegionId> partners;
   for (std::uint32_t i = 0; i < owners.size(); ++i) {
     const core::RegionId other{i};
-    if (other != region && owners.are_near(region, other)) near.push_back(other);
+    const bool tells = tree.is_needed() && tree.has_edge(region, other);
+    if (other != region && (tells || owners.are_near(region, other))) partners.push_back(other);
   }
-  return near;
+  return partners;
 }
 
 }  // namespace
@@ -56,14 +59,19 @@ std::vector<core::RegionId> regions_near(const config::Launch& launch, core::Reg
 dds::TransportSettings neighbour_transport(const config::Launch& launch, core::RegionId region) {
   dds::TransportSettings settings;
   settings.region = region;
-  settings.neighbours = launch.regions.neighbours(region, setup::listening_distance_m(launch));
   settings.map_version = launch.regions.version();
   settings.region_count = static_cast<std::uint32_t>(launch.regions.size());
   settings.prototype_count = static_cast<std::uint32_t>(launch.scene.prototypes.size() + core::kRoomForClients);
   settings.static_count = static_cast<std::uint32_t>(launch.scene.statics.size() + core::kRoomForClients);
   settings.joint_count = static_cast<std::uint32_t>(launch.scene.joints.size() + core::kRoomForClients);
   settings.coupled = launch.is_coupled();
-  if (settings.coupled) settings.near = regions_near(launch, region);
+  std::optional<core::BlockOwners> owners;
+  if (settings.coupled) {
+    owners.emplace(physics::block_owners(launch.regions, launch.scene, setup::physics_settings(launch)));
+    settings.near = frequent_partners(*owners, region);
+  }
+  const core::Nearness nearness(setup::listening_distance_m(launch), owners ? &*owners : nullptr);
+  settings.neighbours = core::regions_near(launch.regions, nearness, region);
   settings.block_m = launch.block_m();
   return settings;
 }

@@ -211,7 +211,9 @@ void NodeProcess::compute_step() {
   for (const core::Order& order : report.orders) {
     if (std::holds_alternative<core::Save>(order.action)) run_.saving.expect(order);
   }
-  const double frame_ms = milliseconds(Clock::now() - begin);
+  const double waited_ms = 1e3 * report.durations.gathering_s;
+  const double frame_ms = milliseconds(Clock::now() - begin) - waited_ms;
+  run_.records.note_wait(waited_ms);
   run_.node->protocol().report_frame(report.step, frame_ms / 1e3);
   run_.records.note_frame(report.step, frame_ms);
   run_.record(run_.node->confirmed());

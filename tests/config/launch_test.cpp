@@ -39,10 +39,9 @@ TEST(LaunchFile, ExchangeAutoIsSettledWhereOnlyOneOfTheTwoIsPossibleOrMakesSense
   EXPECT_FALSE(open.is_coupled());
   EXPECT_EQ(open.why_exchange, "");
   EXPECT_EQ(workspace.launch(automatic, {"regions.count=1"}).exchange, Exchange::kAura);
-  EXPECT_EQ(workspace.launch(automatic, {"regions.count=16"}).exchange, Exchange::kAuto);
-  EXPECT_EQ(workspace.launch(automatic, {"regions.count=17"}).exchange, Exchange::kAura)
-      << "coupled, all listen to all";
-  EXPECT_TRUE(workspace.launch(automatic, {"regions.count=17", "exchange=coupled"}).is_coupled());
+  EXPECT_EQ(workspace.launch(automatic, {"regions.count=36"}).exchange, Exchange::kAuto);
+  EXPECT_EQ(workspace.launch(automatic, {"regions.count=37"}).exchange, Exchange::kAura) << "each step waits for all";
+  EXPECT_TRUE(workspace.launch(automatic, {"regions.count=37", "exchange=coupled"}).is_coupled());
   const std::vector<std::vector<std::string>> cases = {
       {"physics.solver=sequential_impulse"},
       {"time.sync=free_running"},

@@ -63,17 +63,5 @@ TEST(OrderLog, GoesOnAfterTheOrdersOfAnEarlierMap) {
   EXPECT_EQ(log.announce(order(0), 0).sequence, 9u);
 }
 
-TEST(HopsAcross, CountsTheLongestWay) {
-  const RegionMap six = RegionMap::columns(6, 10);
-  EXPECT_EQ(hops_across(six, 1), 5);
-  EXPECT_EQ(hops_across(six, 11), 3) << "each hears the one after the next, too";
-  EXPECT_EQ(hops_across(six, 1e9), 1);
-  EXPECT_EQ(hops_across(RegionMap::columns(1, 10), 1e9), 0);
-}
-
-TEST(HopsAcross, InAGridGoesCornerToCorner) {
-  EXPECT_EQ(hops_across(RegionMap::grid(3, 3, 10, 10), 1), 2) << "over the corners";
-}
-
 }  // namespace
 }  // namespace aurasim::core::testing

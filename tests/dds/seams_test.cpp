@@ -75,6 +75,34 @@ TEST(Seams, AnswerWhoAsksWhileTheyCompute) {
   EXPECT_TRUE(are_matched(left, 2));
 }
 
+/// Who begins a step may only know that most have ended the one before (core/seam_tree.h).
+TEST(Seams, AnswerWhoIsAStepBehind) {
+  Coupled left(0, {});
+  left.seams.begin(0, 1);
+  left.post(2, 1);
+  left.seams.begin(0, 2);
+  left.post(2, 2);
+  Coupled right(2, {});
+  right.seams.begin(0, 1);
+  EXPECT_EQ(right.fetch(0), parcel_of(1));
+  right.seams.begin(0, 2);
+  EXPECT_EQ(right.fetch(0), parcel_of(2));
+}
+
+TEST(Seams, CountNoExchangeBeforeTheyBegin) {
+  Coupled left(0, {1}), right(1, {0});
+  ASSERT_TRUE(testing::holds_in_time([&] { return are_matched(left, 1) && are_matched(right, 0); }));
+  left.seams.begin(0, 1), right.seams.begin(0, 1);
+  right.post(0, 1), right.post(0, 2);
+  EXPECT_EQ(left.fetch(1), parcel_of(1));
+  EXPECT_EQ(left.seams.times().seconds.size(), 1U);
+  left.seams.begin_exchanges();
+  EXPECT_TRUE(left.seams.times().seconds.empty());
+  EXPECT_EQ(left.seams.times().waited_s, 0);
+  EXPECT_EQ(left.fetch(1), parcel_of(2));
+  EXPECT_EQ(left.seams.times().seconds.size(), 1U);
+}
+
 /// Fills parcels of a step so that both ends know what has to come. They may need many datagrams.
 std::vector<std::byte> large_parcel(std::uint32_t from, core::Step step, int number) {
   const std::size_t size_B = number == 0 ? 300'000 : static_cast<std::size_t>(step % 5) * 40'000;

@@ -209,6 +209,19 @@ TEST_F(Scenes, CoupledRegionsHaveTheBitsOfOneNode) {
   }
 }
 
+/// So many that a tree connects them (core/seam_tree.h), with and without deaths.
+TEST_F(Scenes, ManyCoupledRegionsHaveTheBitsOfOneNode) {
+  TrialRules many = rules(120);
+  many.overrides = {"exchange=coupled", "physics.solver=soft_step", "physics.block=2",
+                    "regions={layout: grid, rows: 3, columns: 4, cell: [5, 4]}"};
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    many.deaths = seed % 2 == 0 ? 2 : 0;
+    const WorldOutcome outcome = outcome_of(random_world(seed), many);
+    EXPECT_EQ(outcome.error, "") << "seed " << seed;
+    EXPECT_EQ(outcome.first_difference, std::nullopt) << "seed " << seed;
+  }
+}
+
 /// Nodes die in the middle of a step, and the others stand in it (VirtualCluster::crash_in_step).
 TEST_F(Scenes, CoupledRegionsWhoseNodesDieHaveTheBitsOfOneNode) {
   TrialRules deadly = rules(200);

@@ -40,6 +40,15 @@ TEST_F(Determinism, CoupledRegionsAreEqualToTheCentralRun) {
   }
 }
 
+/// A tree connects so many nodes (core/seam_tree.h), and most of them do not listen to each other.
+TEST_F(Determinism, TenCoupledRegionsAreEqualToTheCentralRun) {
+  const Words block = {"physics.block=4"};
+  const std::string many =
+      hashes("ten", "demo", 200, block + Words{"exchange=coupled", "regions={layout: columns, count: 10, width: 4}"});
+  EXPECT_GT(hand_offs("ten"), 0);
+  EXPECT_EQ(first_difference(many, hashes("one", "demo", 200, block + Words{"regions.count=1"})), "");
+}
+
 TEST_F(Determinism, WhatAutoMeansIsMeasuredAndHasTheBitsOfTheCentralRun) {
   const std::string central = hashes("auto_central", "demo", 300, {"regions.count=1"});
   const std::string near = hashes("near", "demo", 300, {"exchange=auto", "exchange_limit=10"});

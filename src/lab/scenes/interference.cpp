@@ -198,8 +198,9 @@ void ImpatientClient::ask(node::Node& lead) {
 Programs::Programs(const std::vector<Word>& words, VirtualCluster& listeners, core::Step from)
     : words_(words), listeners_(listeners), from_(from), next_(listeners.size(), 0) {
   if (!listeners.is_coupled()) return;
-  // Coupled nodes learn of a static's move by an order, which takes two states.
-  for (Word& word : words_) word.said_step = std::min(word.said_step, word.setpoints.at_step - 2);
+  // Coupled nodes learn of a static's move by an order.
+  const core::Step ahead = 1 + listeners.node(0).protocol().round();
+  for (Word& word : words_) word.said_step = std::min(word.said_step, word.setpoints.at_step - ahead);
   std::ranges::stable_sort(words_, {}, &Word::said_step);
 }
 
