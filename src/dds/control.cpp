@@ -67,7 +67,8 @@ struct ControlBus::Impl {
   NodeRoster& look();
   bool is_time_to_look();
   std::string problem_with(const messages::RunCommand& command, const Origin& origin) const;
-  void judge(HeardCommand heard, std::vector<messages::RunCommand>& commands);
+  void take_in_commands();
+  void judge(HeardCommand heard);
   bool remember(std::uint64_t request, const Guid& sender);
   bool is_too_much(const Origin& origin);
 
@@ -91,6 +92,7 @@ struct ControlBus::Impl {
   std::map<std::uint64_t, messages::WorldMap> maps;
   std::map<std::uint64_t, Guid> requests;  ///< requests seen or sent, and their writers
   std::vector<HeardCommand> waiting;  ///< commands that only nodes may send, kept until their sender is known to be one
+  std::vector<messages::RunCommand> taken;     ///< from the reader, and not returned yet
   std::deque<std::uint64_t> request_sequence;  ///< oldest first
   std::uint64_t seen_changes = 0;              ///< of the status reader's watch, at the last look
   std::chrono::steady_clock::time_point next_look;
@@ -216,6 +218,7 @@ ControlBus::~ControlBus() = default;
 void ControlBus::move_to(Participant& participant) {
   auto anew = std::make_unique<Impl>(participant, impl_->settings);
   anew->requests = std::move(impl_->requests);
+  anew->taken = std::move(impl_->taken);
   anew->request_sequence = std::move(impl_->request_sequence);
   impl_ = std::move(anew);
 }
@@ -304,17 +307,17 @@ std::uint64_t ControlBus::send(messages::RunCommand command) {
 /// A process that has just started receives commands before it knows which processes are nodes. Commands that only
 /// nodes may send wait until that is known. Later commands of the same sender wait with them, because a pause means
 /// nothing before the world that it applies to.
-void ControlBus::Impl::judge(HeardCommand heard, std::vector<messages::RunCommand>& commands) {
+void ControlBus::Impl::judge(HeardCommand heard) {
   const bool is_behind = std::ranges::any_of(
       waiting, [&](const HeardCommand& other) { return other.origin.writer == heard.origin.writer; });
   if (is_behind && waiting.size() < kMostWaiting) return waiting.push_back(std::move(heard));
   const std::string problem = problem_with(heard.command, heard.origin);
   if (problem.empty()) {
-    messages::RunCommand& command = heard.command;
-    command.clock_ahead = heard.origin.clock_ahead;
-    command.is_of_itself = roster.is_of(command.process, heard.origin);
-    command.is_of_a_node = participant.domain().speakers().is_node(heard.origin.writer);
-    if (remember(command.request, heard.origin.writer)) commands.push_back(std::move(command));
+    messages::RunCommand& sound = heard.command;
+    sound.clock_ahead = heard.origin.clock_ahead;
+    sound.is_of_itself = roster.is_of(sound.process, heard.origin);
+    sound.is_of_a_node = participant.domain().speakers().is_node(heard.origin.writer);
+    if (remember(sound.request, heard.origin.writer)) taken.push_back(std::move(sound));
     return;
   }
   if (std::chrono::steady_clock::now() < heard.since + kUntilKnown && waiting.size() < kMostWaiting) {
@@ -326,30 +329,46 @@ void ControlBus::Impl::judge(HeardCommand heard, std::vector<messages::RunComman
   command_reader->refuse_from(heard.origin, fmt::format("{}: {}", name_of(heard.command.kind), problem));
 }
 
-std::vector<messages::RunCommand> ControlBus::take_commands() {
-  impl_->participant.progress();
-  std::vector<messages::RunCommand> commands;
-  if (!impl_->command_reader) return commands;
-  std::vector<HeardCommand> heard = std::exchange(impl_->waiting, {});
+/// Adds the commands that have come to `taken`.
+void ControlBus::Impl::take_in_commands() {
+  participant.progress();
+  if (!command_reader) return;
+  std::vector<HeardCommand> heard = std::exchange(waiting, {});
   messages::Expected expected;
-  expected.map_version = impl_->settings.map_version;
+  expected.map_version = settings.map_version;
   Origin origin;
-  while (impl_->command_reader->take(&impl_->command, &origin)) {
-    if (impl_->is_too_much(origin)) continue;
-    origin.heed(impl_->command.sent_ns());
-    auto decoded = messages::decode(impl_->command, expected);
+  while (command_reader->take(&command, &origin)) {
+    if (is_too_much(origin)) continue;
+    origin.heed(command.sent_ns());
+    auto decoded = messages::decode(command, expected);
     if (const auto* error = std::get_if<messages::WireError>(&decoded)) {
-      impl_->refused.add(*error);
-      impl_->command_reader->refuse_from(origin, *error);
+      refused.add(*error);
+      command_reader->refuse_from(origin, *error);
       continue;
     }
-    auto& command = std::get<messages::RunCommand>(decoded);
-    if (impl_->settings.run && command.run != 0 && command.run != *impl_->settings.run) continue;
-    heard.push_back({std::move(command), origin, std::chrono::steady_clock::now()});
+    auto& sound = std::get<messages::RunCommand>(decoded);
+    if (settings.run && sound.run != 0 && sound.run != *settings.run) continue;
+    heard.push_back({std::move(sound), origin, std::chrono::steady_clock::now()});
   }
-  if (!heard.empty()) impl_->look();  // learns which process may send what
-  for (HeardCommand& one : heard) impl_->judge(std::move(one), commands);
-  return commands;
+  if (!heard.empty()) look();  // learns which process may send what
+  for (HeardCommand& one : heard) judge(std::move(one));
+}
+
+std::vector<messages::RunCommand> ControlBus::take_commands() {
+  impl_->take_in_commands();
+  return std::exchange(impl_->taken, {});
+}
+
+void ControlBus::hear_of_deaths() {
+  impl_->take_in_commands();
+  const std::vector<messages::RunCommand> taken = std::exchange(impl_->taken, {});
+  for (const messages::RunCommand& command : taken) {
+    if (command.kind == messages::RunCommandKind::kLost) {
+      receive_death(command);
+    } else {
+      impl_->taken.push_back(command);
+    }
+  }
 }
 
 void ControlBus::note_state() { impl_->asked.allow_more(kWordsAState); }

@@ -77,6 +77,9 @@ class ControlBus {
   /// Returns commands of other processes that were not returned before, in order of arrival, each request id once. A
   /// command that only a node may send is refused from any other process.
   std::vector<messages::RunCommand> take_commands();
+  /// Handles the reports of deaths among these commands at once. For a caller that cannot execute the others now; they
+  /// stay for take_commands().
+  void hear_of_deaths();
   /// To be called when this node has computed a state: it allows one more command to each process that steps the run.
   void note_state();
   /// Refuses a command that was taken but makes no sense, and counts it against its sender. `why` is for the log.

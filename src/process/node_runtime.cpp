@@ -91,7 +91,10 @@ bool NodeRuntime::fence_is_open() { return fence.open(node->protocol().intake().
 dds::TransportSettings NodeRuntime::transport_settings() {
   dds::TransportSettings settings = neighbour_transport(launch, options.region);
   settings.life = life;
-  settings.why_stand = [this] { return death(); };
+  settings.why_stand = [this] {
+    control().hear_of_deaths();  // where all wait in the middle of a step, nobody executes commands
+    return death();
+  };
   settings.is_busy = [this](core::RegionId region) {
     const auto seen = control().statuses().find(region);
     return seen != control().statuses().end() && long_step(seen->second, Clock::now());

@@ -302,6 +302,31 @@ TEST_F(AStranger, DoesNotKillByItsWord) {
   EXPECT_TRUE(zero_bus_.statuses().at(RegionId{1}).lost);
 }
 
+/// A node that waits in the middle of a step hears of deaths, and executes other commands after it.
+TEST_F(AStranger, IsHeardOfDeathsBeforeOtherCommandsAreTaken) {
+  std::vector<messages::RunCommandKind> kinds = {messages::RunCommandKind::kPause, messages::RunCommandKind::kLost,
+                                                 messages::RunCommandKind::kResume};
+  messages::Status gone = of_this_host(1);
+  gone.pid = 0x7fff'ffffU;  // above any that Linux gives
+  ASSERT_TRUE(one_bus_.publish_status(gone));
+  ASSERT_TRUE(holds_in_time([&] { return zero_bus_.statuses().at(RegionId{1}).status.pid == gone.pid; }));
+  for (const messages::RunCommandKind kind : kinds) {
+    messages::RunCommand command = command_of(kind);
+    command.process = 101;
+    one_bus_.send(command);
+  }
+  ASSERT_TRUE(holds_in_time([&] {
+    zero_bus_.hear_of_deaths();
+    return zero_bus_.statuses().at(RegionId{1}).lost;
+  }));
+  std::vector<messages::RunCommandKind> taken;
+  ASSERT_TRUE(holds_in_time([&] {
+    for (const messages::RunCommand& one : zero_bus_.take_commands()) taken.push_back(one.kind);
+    return taken.size() == 2;
+  }));
+  EXPECT_THAT(taken, ElementsAre(messages::RunCommandKind::kPause, messages::RunCommandKind::kResume));
+}
+
 TEST_F(AStranger, IsBelievedOfADeathOnceTheProcessIsGone) {
   messages::Status gone = of_this_host(1);
   gone.pid = 0x7fff'ffffU;  // above any that Linux gives
