@@ -106,6 +106,7 @@ struct DdsSeams::Impl {
   double exchange_s = 0;         ///< of the exchange that goes on
   bool has_fetched = false;      ///< in the exchange that goes on
   Clock::time_point last_asked;  ///< whether others stand
+  SeamCounters told;             ///< by times(), in all
   wire::SeamPiece sample;        // reused
 
   // The DDS thread that takes what comes uses these.
@@ -309,6 +310,8 @@ void DdsSeams::Impl::end_exchange() {
 
 const ExchangeTimes& DdsSeams::times() {
   if (impl_->has_fetched) impl_->end_exchange();
+  const SeamCounters now = counters(), before = std::exchange(impl_->told, now);
+  impl_->times.counters = {now.questions - before.questions, now.repeated - before.repeated};
   impl_->times.waited_s = 0;
   for (const auto& [region, peer] : impl_->peers) {
     if (peer.waited_s <= impl_->times.waited_s) continue;

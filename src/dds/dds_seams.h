@@ -30,18 +30,18 @@ struct SeamSettings {
   std::function<std::optional<ProcessPrefix>(core::RegionId)> node_of = {};
 };
 
+struct SeamCounters {
+  std::uint64_t questions = 0;  ///< for pieces that had not come
+  std::uint64_t repeated = 0;   ///< pieces that were sent again
+};
+
 /// Times of the exchanges of one step. In an exchange a region posts parcels to others, and then fetches theirs.
 struct ExchangeTimes {
   std::vector<double>
       seconds;  ///< of each exchange: posting, and waiting for parcels; without what is computed between
   core::RegionId waited_for{};  ///< the region that was waited for longest
   double waited_s = 0;          ///< for it, in all exchanges of the step
-};
-
-/// Since the beginning.
-struct SeamCounters {
-  std::uint64_t questions = 0;  ///< for pieces that had not come
-  std::uint64_t repeated = 0;   ///< pieces that were sent again
+  SeamCounters counters;        ///< of what went on since these times were asked for last
 };
 
 class DdsSeams final : public core::SeamMail {
@@ -57,6 +57,7 @@ class DdsSeams final : public core::SeamMail {
 
   /// The exchanges since begin().
   const ExchangeTimes& times();
+  /// Since the beginning.
   SeamCounters counters() const;
 
   void begin(core::Generation generation, core::Step step) override;

@@ -125,7 +125,7 @@ void NodeRuntime::take_exchange_of_others() {
 void NodeRuntime::note_exchanges(Clock::time_point now) {
   const dds::ExchangeTimes* const times = transport().exchange_times();
   if (times == nullptr) return;
-  records.note_exchanges(times->seconds);
+  records.note_exchanges(*times);
   status.note_exchanges(times->seconds);
   const auto slow =
       exchange_watch.note(times->seconds, times->waited_for, times->waited_s, launch.exchange_limit_s(), now);

@@ -26,8 +26,10 @@ void Records::note_frame(core::Step step, double frame_ms) {
   frame_times_[step] = {frame_ms, std::exchange(wait_ms_, 0)};
 }
 
-void Records::note_exchanges(std::span<const double> seconds) {
-  for (const double one : seconds) exchanges_.note(one);
+void Records::note_exchanges(const dds::ExchangeTimes& times) {
+  for (const double one : times.seconds) exchanges_.times.note(one);
+  exchanges_.asked += times.counters.questions;
+  exchanges_.repeated += times.counters.repeated;
 }
 
 void Records::write(const node::StepReport& report) {

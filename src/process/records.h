@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "dds/dds_seams.h"
 #include "records/recorder.h"
 
 namespace aurasim::process {
@@ -33,9 +34,9 @@ class Records {
   void note_wait(double wait_ms) { wait_ms_ += wait_ms; }
   void note_frame(core::Step step, double frame_ms);
   /// Counts the exchanges of a state where regions are coupled.
-  void note_exchanges(std::span<const double> seconds);
+  void note_exchanges(const dds::ExchangeTimes& times);
   /// All exchanges since begin().
-  const records::TimeHistogram& exchanges() const { return exchanges_; }
+  const records::Exchanges& exchanges() const { return exchanges_; }
   /// Forgets the frame times of states that will never be recorded.
   void forget_frames() { frame_times_.clear(); }
 
@@ -54,7 +55,7 @@ class Records {
   core::RegionId region_;
   std::optional<records::Recorder> recorder_;
   std::map<core::Step, records::FrameTimes> frame_times_;  ///< of states that are not recorded yet
-  records::TimeHistogram exchanges_;
+  records::Exchanges exchanges_;
   double wait_ms_ = 0;  ///< since the last state
 };
 

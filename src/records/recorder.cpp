@@ -225,12 +225,14 @@ void Recorder::write_summary(node::Node& node, const Ending& ending) const {
   };
   summary["exchange"] = ending.exchange;
   if (ending.round_trip_ms > 0) summary["round_trip_ms"] = ending.round_trip_ms;
-  if (const TimeHistogram& times = ending.exchanges; times.count() > 0) {
+  if (const TimeHistogram& times = ending.exchanges.times; times.count() > 0) {
     summary["exchanges"] = {{"count", times.count()},
                             {"p50_ms", 1e3 * times.percentile_s(0.5)},
                             {"p90_ms", 1e3 * times.percentile_s(0.9)},
                             {"p99_ms", 1e3 * times.percentile_s(0.99)},
-                            {"max_ms", 1e3 * times.longest_s()}};
+                            {"max_ms", 1e3 * times.longest_s()},
+                            {"asked", ending.exchanges.asked},
+                            {"repeated", ending.exchanges.repeated}};
   }
   summary["computing_s"] = node.time_spent().all_s();
   summary["in_redos_s"] = node.time_spent().in_redos_s();

@@ -21,6 +21,13 @@ struct FrameTimes {
   double wait_ms = 0;   ///< time spent waiting for neighbours
 };
 
+/// Exchanges with coupled regions.
+struct Exchanges {
+  TimeHistogram times;
+  std::uint64_t asked = 0;     ///< for pieces of parcels that had not come in time
+  std::uint64_t repeated = 0;  ///< pieces that were sent again
+};
+
 /// How a node's run ended.
 struct Ending {
   double real_time_factor = 1;
@@ -31,7 +38,7 @@ struct Ending {
   std::uint64_t checkpoints_left_out = 0;  ///< parts for which the way to the keeper was too slow
   std::string exchange = {};               ///< how bodies of two regions touch: aura or coupled
   double round_trip_ms = 0;                ///< the slowest that was measured before the start; 0: none was
-  TimeHistogram exchanges = {};            ///< of coupled regions
+  Exchanges exchanges = {};                ///< if regions are coupled
 };
 
 /// Where the records end before the run does.

@@ -22,18 +22,19 @@ void HeartbeatLimit::note_sent(std::uint32_t writer, std::uint64_t number, Time 
   if (found == writers_.end() || number <= found->second.last) return;
   Steady& steady = found->second;
   const Time before = std::exchange(steady.at, now);
-  const Time apart = steady.last == 0 ? Time{0} : std::min(now - before, kLongestSilence / 2);
+  const Time longest = std::min(2 * std::max(steady.apart, kSilence / 2), kLongestSilence / 2);
+  const Time apart = steady.last == 0 ? Time{0} : std::min(now - before, longest);
   steady.apart = std::max(apart, steady.apart - steady.apart / 8);
   steady.last = number;
 }
 
 void HeartbeatLimit::note_request(const Request& request, Time now) {
   const auto found = writers_.find(request.writer);
-  if (found == writers_.end()) return;
+  if (found == writers_.end() || request.base == 0) return;
   Steady& steady = found->second;
-  if (steady.first_answers.size() >= kMostReaders) steady.first_answers.clear();
-  const Time first = steady.first_answers.try_emplace(request.reader, now).first->second;
-  if (request.wanted > 0 && now - first >= kNew) steady.lossy_until = now + kAfterLoss;
+  if (steady.met.size() >= kMostReaders) steady.met.clear();
+  const std::uint64_t met = steady.met.try_emplace(request.reader, steady.last).first->second;
+  if (request.wanted > 0 && request.base > met) steady.lossy_until = now + kAfterLoss;
 }
 
 bool HeartbeatLimit::allows(const Heartbeat& heartbeat, const Peer& peer, Time now) {

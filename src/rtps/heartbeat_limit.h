@@ -44,12 +44,11 @@ class HeartbeatLimit {
   /// A heartbeat is sent after so many samples at the latest, because writers keep what is not acknowledged.
   static constexpr std::uint64_t kMostUnasked = 8;
   /// A writer has fallen silent when its last sample is older than this, and than twice the longest time between two of
-  /// late. On a busy host states come irregularly.
+  /// late. On a busy host states come irregularly. One long time, as before the start or in a pause, only doubles what
+  /// counts.
   static constexpr Time kSilence = std::chrono::milliseconds(5), kLongestSilence = std::chrono::milliseconds(200);
   /// A silent writer asks again after twice as long each time, up to this: who does not answer has no processor now.
   static constexpr Time kLongestPause = std::chrono::milliseconds(500);
-  /// Samples that a reader lacks so soon after its first answer were sent before it knew the writer, and are no loss.
-  static constexpr Time kNew = std::chrono::seconds(2);
   /// After a loss all heartbeats are sent for so long: where one sample was lost, others will be.
   static constexpr Time kAfterLoss = std::chrono::seconds(10);
   static constexpr std::size_t kMostReaders = 4096;
@@ -67,7 +66,9 @@ class HeartbeatLimit {
     Time apart{0};           ///< longest time between two of late
     std::optional<Time> lossy_until;
     std::map<std::pair<Peer, std::uint32_t>, Asked> asked;  ///< by peer and reader
-    std::map<WireGuid, Time> first_answers;                 ///< by reader
+    /// By reader: the newest sample when it acknowledged something for the first time. What it lacks of those up to
+    /// this one was sent before it knew the writer, and is no loss.
+    std::map<WireGuid, std::uint64_t> met;
   };
   std::unordered_map<std::uint32_t, Steady> writers_;
 };

@@ -70,6 +70,8 @@ TEST(Seams, AnswerWhoAsksWhileTheyCompute) {
   EXPECT_EQ(right.fetch(0), parcel_of(1));
   EXPECT_EQ(right.fetch(0), parcel_of(101));
   EXPECT_GT(right.seams.counters().questions, 0U);
+  EXPECT_EQ(right.seams.times().counters.questions, right.seams.counters().questions);
+  EXPECT_EQ(right.seams.times().counters.questions, 0U) << "since it was told";
   EXPECT_GT(left.seams.counters().repeated, 0U);
   EXPECT_EQ(left.seams.endpoints_of(RegionId{2}), 1U);
   EXPECT_TRUE(are_matched(left, 2));
