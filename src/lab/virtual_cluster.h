@@ -105,6 +105,8 @@ class VirtualCluster {
   std::span<const core::BodyRecord> records(std::size_t region) { return members_[region].node->world().records(); }
   /// Precondition: ClusterRules::bandwidth_B_s is set.
   const WirePost& post() const { return *post_; }
+  /// Parcels between coupled regions so far.
+  const transport::ParcelCount& parcels() const { return seams_.posted(); }
   /// The newest state that is confirmed on every live node (node/node.h).
   core::Step confirmed() const;
   /// The lowest state that a live node is in.

@@ -52,7 +52,8 @@ void MemorySeams::put(core::RegionId from, core::RegionId to, std::span<const st
     throw core::SeamsBroken("the process has died in the middle of a step");
   }
   parcels_[{from, to}].emplace_back(parcel.begin(), parcel.end());
-  ++count_;
+  ++posted_.count;
+  posted_.bytes += parcel.size();
   arrived_.notify_all();
 }
 

@@ -17,6 +17,11 @@
 
 namespace aurasim::transport {
 
+struct ParcelCount {
+  std::size_t count = 0;
+  std::size_t bytes = 0;
+};
+
 class MemorySeams {
  public:
   explicit MemorySeams(std::size_t regions);
@@ -30,7 +35,8 @@ class MemorySeams {
   /// True if all parcels have been fetched.
   bool is_empty() const;
   /// Number of parcels so far.
-  std::size_t count() const { return count_; }
+  std::size_t count() const { return posted_.count; }
+  const ParcelCount& posted() const { return posted_; }
 
  private:
   class Box;
@@ -41,7 +47,7 @@ class MemorySeams {
   std::mutex mutex_;  ///< held by the thread that runs
   std::condition_variable arrived_;
   std::map<std::pair<core::RegionId, core::RegionId>, std::deque<std::vector<std::byte>>> parcels_;
-  std::size_t count_ = 0;
+  ParcelCount posted_;
   std::optional<std::pair<core::RegionId, std::size_t>> ending_;  ///< the parcels that this region posts yet
   bool closed_ = false;
   std::vector<std::unique_ptr<Box>> boxes_;

@@ -32,6 +32,17 @@ TEST(ManyNodes, ANodeTalksToItsNeighboursOnlyHoweverManyNodesThereAre) {
   EXPECT_LT(many.memory_kB, 2000);  // pools of fixed sizes took 14 MB
 }
 
+/// So many coupled regions that a tree connects them (core/seam_tree.h).
+TEST(ManyNodes, CoupledOnesTalkToAFewOnlyAndHaveTheSameBits) {
+  ManyNodes few = grid(4), many = grid(9);
+  few.coupled = many.coupled = true;
+  const NodeCosts costs_of_few = measure(few), costs_of_many = measure(many);
+  EXPECT_GT(costs_of_few.messages, 2) << "a batch and what comes along the tree, at least";
+  EXPECT_LT(costs_of_many.messages / costs_of_few.messages, 1.1 * 6.7 / 5.25);
+  EXPECT_LT(costs_of_many.bytes / costs_of_few.bytes, 1.1 * 6.7 / 5.25);
+  EXPECT_EQ(costs_of_many.hash, measure(grid(9)).hash);
+}
+
 TEST(ManyNodes, AWorldFromWhichNodesDieGoesOnWithTheSameBits) {
   ManyNodes with_deaths = grid(5);
   with_deaths.deaths = 5;

@@ -251,23 +251,30 @@ SuiteResults run_many_nodes(const SuitePlan& wanted, const Progress& progress) {
   const RainPlace place = rain_place();
   SuiteResults results;
   std::map<std::size_t, NodeCosts> all;
-  for (std::size_t i = 0; i < kSides.size(); ++i) {
-    ManyNodes many;
-    many.side = kSides[i];
-    if (!wanted.is_full() && many.side > 8) break;
-    const auto shown = [&](double share) {
-      return progress((static_cast<double>(i) + share) / static_cast<double>(kSides.size()));
-    };
-    const std::optional<NodeCosts> costs = measure_many_nodes(many, place, shown);
-    if (!costs) return results;
-    const std::string what = fmt::format("grid/{} nodes", many.nodes());
-    for (const Figure& figure : figures(*costs))
-      results.rows.push_back({what, figure.metric, figure.value, figure.unit});
-    all[many.nodes()] = *costs;
+  for (const bool coupled : {false, true}) {
+    for (std::size_t i = 0; i < kSides.size(); ++i) {
+      ManyNodes many;
+      many.side = kSides[i];
+      many.coupled = coupled;
+      if (!wanted.is_full() && many.side > 8) break;
+      const auto shown = [&](double share) {
+        const double of_half = (static_cast<double>(i) + share) / static_cast<double>(kSides.size());
+        return progress((of_half + (coupled ? 1 : 0)) / 2);
+      };
+      const std::optional<NodeCosts> costs = measure_many_nodes(many, place, shown);
+      if (!costs) return results;
+      const std::string what = fmt::format("{}/{} nodes", coupled ? "coupled" : "grid", many.nodes());
+      for (const Figure& figure : figures(*costs))
+        results.rows.push_back({what, figure.metric, figure.value, figure.unit});
+      all[many.nodes()] = *costs;
+    }
+    if (!wanted.is_full()) continue;
+    const char* const kind = coupled ? ", coupled" : "";
+    add_targets(results, {{fmt::format("messages of a node and step, 1024 nodes over 64{}", kind),
+                           all[1024].messages / all[64].messages, 1.2},
+                          {fmt::format("bytes of a node and step, 1024 nodes over 64{}", kind),
+                           all[1024].bytes / all[64].bytes, 1.2}});
   }
-  if (!wanted.is_full()) return results;
-  add_targets(results, {{"messages of a node and step, 1024 nodes over 64", all[1024].messages / all[64].messages, 1.2},
-                        {"bytes of a node and step, 1024 nodes over 64", all[1024].bytes / all[64].bytes, 1.2}});
   return results;
 }
 

@@ -74,6 +74,13 @@ class ManyNodesRun {
     node::Node& node = cluster_.node(region);
     if (event.report->step > first_) sums_.add(*event.report);
     if (event.report->step == first_) begin_[event.region] = cluster_.post().traffic(event.region);
+    // Coupled nodes have all computed a state before the first of them tells of it.
+    const bool is_first = event.region == core::RegionId{0};
+    if (is_first && event.report->step == first_) parcels_ = cluster_.parcels();
+    if (is_first && event.report->step == last_) {
+      sums_.messages += cluster_.parcels().count - parcels_.count;
+      sums_.bytes += cluster_.parcels().bytes - parcels_.bytes;
+    }
     if (event.report->step == last_) {
       const Traffic& now = cluster_.post().traffic(event.region);
       sums_.messages += now.messages - begin_[event.region].messages;
@@ -93,6 +100,7 @@ class ManyNodesRun {
   Sums sums_;
   std::uint64_t hash_ = 0;
   std::map<core::RegionId, Traffic> begin_;
+  transport::ParcelCount parcels_;  ///< after state `first_`
   std::vector<core::WorldCut> saved_;
 };
 
@@ -116,6 +124,7 @@ std::optional<NodeCosts> measure_many_nodes(const ManyNodes& many, const RainPla
   const Rain rain = rain_of(many);
   std::vector<std::string> settings = rain.overrides();
   settings.emplace_back("time.sync=deterministic");
+  if (many.coupled) settings.insert(settings.end(), {"exchange=coupled", "time.lookahead=1"});
   const config::Launch launch = config::read_launch(place.launch_file, settings);
   ClusterRules rules = rules_of(rain, launch, place);
   rules.hash_states = true;
