@@ -2,7 +2,7 @@
 """What a start and a state cost each node, the more nodes there are on one host.
     scripts/many_processes.py [--nodes 4,9,16,25,36,64] [--exchanges aura,coupled] [PROGRAM=build/release/aurasim]
 600 bodies rain on a grid of regions of 20 m, one process for each, started by `aurasim launch` over Fast DDS. CPU: user and
-system time of all processes. Appends the suite many_processes to docs/results. About 6 minutes on 2 cores. Fails where a run
+system time of all processes. Appends the suite many_processes to docs/results. About 3 minutes on 2 cores. Fails where a run
 does not end well, or where auras and coupled regions do not end in the same bits."""
 import argparse
 import csv

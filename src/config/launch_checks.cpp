@@ -128,7 +128,7 @@ std::string problem_of_auras(const Launch& launch) {
 
 /// The more processes share the cores, the more the several exchanges of a step cost. In a world without heaps a step
 /// of 36 coupled nodes on two cores takes 1.2 times what it takes with auras, and one of 64 nodes twice
-/// (docs/decisions/0064-along-a-tree.md).
+/// (docs/decisions/0050-coupled-where-near.md).
 constexpr std::size_t kMostCoupledByAuto = 36;
 
 /// Where `exchange: auto` can mean only one of the two, no node has to measure anything.

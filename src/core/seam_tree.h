@@ -33,8 +33,8 @@ class SeamTree {
   bool is_leaf(RegionId region) const { return value_of(region) * kChildren + 1 >= regions_; }
   bool has_edge(RegionId a, RegionId b) const { return parent(a) == b || parent(b) == a; }
 
-  /// Of a region at most. With more of them a region takes longer to hear and to tell them all, and with fewer there
-  /// are more messages one after the other: 4 for up to 73 regions.
+  /// A region has at most so many children. With more of them it takes longer to hear and to tell them all, and with
+  /// fewer there are more messages one after the other: 4 for up to 73 regions.
   static constexpr std::uint32_t kChildren = 8;
 
  private:

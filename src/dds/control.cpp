@@ -361,14 +361,11 @@ std::vector<messages::RunCommand> ControlBus::take_commands() {
 
 void ControlBus::hear_of_deaths() {
   impl_->take_in_commands();
-  const std::vector<messages::RunCommand> taken = std::exchange(impl_->taken, {});
-  for (const messages::RunCommand& command : taken) {
-    if (command.kind == messages::RunCommandKind::kLost) {
-      receive_death(command);
-    } else {
-      impl_->taken.push_back(command);
-    }
-  }
+  std::erase_if(impl_->taken, [this](const messages::RunCommand& command) {
+    if (command.kind != messages::RunCommandKind::kLost) return false;
+    receive_death(command);
+    return true;
+  });
 }
 
 void ControlBus::note_state() { impl_->asked.allow_more(kWordsAState); }

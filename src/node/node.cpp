@@ -31,6 +31,18 @@ bool is_of_the_scene(const core::ClusterState& cluster, const core::Scene& scene
                              [&](const auto& m) { return is_known(m.object0) && is_known(m.object1); });
 }
 
+/// Where regions are coupled, another one may be lost while `work` waits for its parcels. Then the node is broken: it
+/// has no state until the run goes back.
+template <class Work>
+void compute_with_others(bool& is_broken, Work&& work) {
+  try {
+    work();
+  } catch (const core::SeamsBroken&) {
+    is_broken = true;
+    throw;
+  }
+}
+
 MadeUp made_up(core::Step step, std::span<const core::BodyRecord> bodies, const core::ClusterState& cluster) {
   MadeUp state{step, {bodies.begin(), bodies.end()}, {}, {}};
   for (const core::BodyRecord& body : cluster.bodies) {
@@ -171,24 +183,13 @@ void Node::meet_partners(core::Step n, std::span<const core::Introduction> intro
   setup_.seams->begin(setup_.protocol.generation, n);
   if (!core::SeamTree(owners_->size()).is_needed()) return partners_->begin(introductions);
   const Timed timed(report_.durations.gathering_s, setup_.clock);
-  try {
-    partners_->begin(gather_pairs(*setup_.seams, region(), owners_->size(), introductions));
-  } catch (const core::SeamsBroken&) {
-    is_broken_ = true;
-    throw;
-  }
+  compute_with_others(is_broken_,
+                      [&] { partners_->begin(gather_pairs(*setup_.seams, region(), owners_->size(), introductions)); });
   setup_.seams->begin_exchanges();
 }
 
-/// Where regions are coupled, another one may be lost in the middle of the state. Then this node has no state until the
-/// run goes back.
 void Node::compute_state() {
-  try {
-    world_.step();
-  } catch (const core::SeamsBroken&) {
-    is_broken_ = true;
-    throw;
-  }
+  compute_with_others(is_broken_, [this] { world_.step(); });
 }
 
 void Node::apply(const core::Changes& changes) {

@@ -42,18 +42,6 @@ dds::Settings settings_of_node(const config::Launch& launch, const NodeOptions& 
   return settings;
 }
 
-/// Coupled regions that post parcels to `region` in most steps.
-std::vector<core::RegionId> frequent_partners(const core::BlockOwners& owners, core::RegionId region) {
-  const core::SeamTree tree(owners.size());
-  std::vector<core::RegionId> partners;
-  for (std::uint32_t i = 0; i < owners.size(); ++i) {
-    const core::RegionId other{i};
-    const bool tells = tree.is_needed() && tree.has_edge(region, other);
-    if (other != region && (tells || owners.are_near(region, other))) partners.push_back(other);
-  }
-  return partners;
-}
-
 }  // namespace
 
 dds::TransportSettings neighbour_transport(const config::Launch& launch, core::RegionId region) {
@@ -66,12 +54,16 @@ dds::TransportSettings neighbour_transport(const config::Launch& launch, core::R
   settings.joint_count = static_cast<std::uint32_t>(launch.scene.joints.size() + core::kRoomForClients);
   settings.coupled = launch.is_coupled();
   std::optional<core::BlockOwners> owners;
-  if (settings.coupled) {
+  if (settings.coupled)
     owners.emplace(physics::block_owners(launch.regions, launch.scene, setup::physics_settings(launch)));
-    settings.near = frequent_partners(*owners, region);
-  }
   const core::Nearness nearness(setup::listening_distance_m(launch), owners ? &*owners : nullptr);
   settings.neighbours = core::regions_near(launch.regions, nearness, region);
+  if (owners) {
+    settings.near = settings.neighbours;
+    // Few regions all listen to each other, and post parcels to those near them only.
+    if (!core::SeamTree(owners->size()).is_needed())
+      std::erase_if(settings.near, [&](core::RegionId other) { return !owners->are_near(region, other); });
+  }
   settings.block_m = launch.block_m();
   return settings;
 }

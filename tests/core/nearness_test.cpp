@@ -76,7 +76,8 @@ TEST(Nearness, OfManyCoupledRegionsIsThatOfPartnersAndOfTheTree) {
   EXPECT_THAT(regions_near(RegionMap::columns(1, 16), {0, nullptr}, RegionId{0}), IsEmpty());
 }
 
-/// What a node hears does not grow with the number of nodes, and all hear of an order after a few states.
+/// The number of regions that a region listens to does not grow with the map, and an order reaches all after a few
+/// states.
 TEST(Nearness, OfCoupledRegionsDoesNotGrowWithTheMap) {
   for (const std::size_t side : {4UL, 8UL, 20UL}) {
     const RegionMap map = RegionMap::grid(side, side, 16, 16);

@@ -77,7 +77,7 @@ TEST(Seams, AnswerWhoAsksWhileTheyCompute) {
   EXPECT_TRUE(are_matched(left, 2));
 }
 
-/// Who begins a step may only know that most have ended the one before (core/seam_tree.h).
+/// A region that begins a step may only know that most have ended the one before (core/seam_tree.h).
 TEST(Seams, AnswerWhoIsAStepBehind) {
   Coupled left(0, {});
   left.seams.begin(0, 1);

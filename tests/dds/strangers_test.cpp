@@ -96,6 +96,13 @@ class AStranger : public ::testing::Test {
     batch.stamp = 3;
     return batch;
   }
+  /// The node of region 1 says that it is a process which is not there. True once the node of region 0 knows.
+  bool shows_a_process_that_is_gone() {
+    messages::Status gone = of_this_host(1);
+    gone.pid = 0x7fff'ffffU;  // above any that Linux gives
+    return one_bus_.publish_status(gone) &&
+           holds_in_time([&] { return zero_bus_.statuses().at(RegionId{1}).status.pid == gone.pid; });
+  }
   std::string said() {
     for (std::string& text : zero_.participant.take_said()) said_ += text + "\n";
     return said_;
@@ -304,13 +311,9 @@ TEST_F(AStranger, DoesNotKillByItsWord) {
 
 /// A node that waits in the middle of a step hears of deaths, and executes other commands after it.
 TEST_F(AStranger, IsHeardOfDeathsBeforeOtherCommandsAreTaken) {
-  std::vector<messages::RunCommandKind> kinds = {messages::RunCommandKind::kPause, messages::RunCommandKind::kLost,
-                                                 messages::RunCommandKind::kResume};
-  messages::Status gone = of_this_host(1);
-  gone.pid = 0x7fff'ffffU;  // above any that Linux gives
-  ASSERT_TRUE(one_bus_.publish_status(gone));
-  ASSERT_TRUE(holds_in_time([&] { return zero_bus_.statuses().at(RegionId{1}).status.pid == gone.pid; }));
-  for (const messages::RunCommandKind kind : kinds) {
+  using Kind = messages::RunCommandKind;
+  ASSERT_TRUE(shows_a_process_that_is_gone());
+  for (const Kind kind : {Kind::kPause, Kind::kLost, Kind::kResume}) {
     messages::RunCommand command = command_of(kind);
     command.process = 101;
     one_bus_.send(command);
@@ -319,19 +322,16 @@ TEST_F(AStranger, IsHeardOfDeathsBeforeOtherCommandsAreTaken) {
     zero_bus_.hear_of_deaths();
     return zero_bus_.statuses().at(RegionId{1}).lost;
   }));
-  std::vector<messages::RunCommandKind> taken;
+  std::vector<Kind> taken;
   ASSERT_TRUE(holds_in_time([&] {
     for (const messages::RunCommand& one : zero_bus_.take_commands()) taken.push_back(one.kind);
     return taken.size() == 2;
   }));
-  EXPECT_THAT(taken, ElementsAre(messages::RunCommandKind::kPause, messages::RunCommandKind::kResume));
+  EXPECT_THAT(taken, ElementsAre(Kind::kPause, Kind::kResume));
 }
 
 TEST_F(AStranger, IsBelievedOfADeathOnceTheProcessIsGone) {
-  messages::Status gone = of_this_host(1);
-  gone.pid = 0x7fff'ffffU;  // above any that Linux gives
-  ASSERT_TRUE(one_bus_.publish_status(gone));
-  ASSERT_TRUE(holds_in_time([&] { return zero_bus_.statuses().at(RegionId{1}).status.pid == gone.pid; }));
+  ASSERT_TRUE(shows_a_process_that_is_gone());
   messages::RunCommand lost = command_of(messages::RunCommandKind::kLost);
   lost.process = 101;
   zero_bus_.receive_death(lost);

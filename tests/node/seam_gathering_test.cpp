@@ -18,7 +18,7 @@ using core::RegionId;
 
 using Pairs = std::vector<Introduction>;
 
-/// What each region says: nothing, or some pairs.
+/// Each region says nothing, or some pairs.
 std::vector<Pairs> random_pairs(std::uint32_t regions, std::mt19937& random) {
   std::vector<Pairs> all(regions);
   for (Pairs& pairs : all) {
@@ -31,7 +31,7 @@ std::vector<Pairs> random_pairs(std::uint32_t regions, std::mt19937& random) {
   return all;
 }
 
-/// What a region has from the batches of those that a tree connects it with, and its own.
+/// A region knows the pairs of its own batch, and of the batches of those that the tree connects it with.
 Pairs known_to(std::uint32_t region, const std::vector<Pairs>& said) {
   const core::SeamTree tree(said.size());
   Pairs known;
